@@ -18,6 +18,7 @@
 #include "app/progress.h"
 #include "app/result_folder.h"
 #include "app/scene_plan.h"
+#include "app/scene_run.h"
 #include "app/solver_flags.h"
 #include "core/algebra/openblas.h"
 #include "fit/reports/fit_details.h"
@@ -98,14 +99,10 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
-  for (const char* const flag :
-       {"init",  "model",   "stretch",        "d_nodes",        "f_bins",     "g_nodes",
-        "nodes", "prior",   "max_parameters", "robust",         "smoothness", "match_reflectance",
-        "raw",   "probe",   "convergence",    "reconstruction", "plots",      "diagnose",
-        "shard", "verbose", "spectral"}) {
-    if (!IsDefault(flag)) {
-      throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
-    }
+  const std::vector<std::string> taken = SceneFlags();
+  for (const auto& [flag, value] : GivenFlags(FitFlags())) {
+    if (flag == "scene" || flag == "out" || std::ranges::find(taken, flag) != taken.end()) continue;
+    throw Error("--" + flag + " is for the fit of one SOURCE, not for --scene");
   }
   return RunSceneFit(FLAGS_scene);
 }

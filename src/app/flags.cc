@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <iostream>
-#include <optional>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
+#include "io/formats/source_option.h"
 #include "io/formats/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "trilobe/core/base/error.h"
@@ -127,52 +127,25 @@ int ThreadsFromFlags() {
   return std::min(FLAGS_threads, cores);
 }
 
-namespace {
-
-// None for auto.
-std::optional<double> TiltFromFlag() {
-  if (FLAGS_tilt == "auto") return std::nullopt;
-  if (const std::optional<double> degrees = ToNumber(FLAGS_tilt)) return degrees;
-  throw Error("--tilt=" + FLAGS_tilt + ": give a number of degrees from -30 to 30, or auto");
-}
-
-bool IsFromMirror(const std::string& azimuth) {
-  if (azimuth == "from_mirror" || azimuth == "from_light") return azimuth == "from_mirror";
-  throw Error("--azimuth=" + azimuth + ": give from_mirror or from_light");
-}
-
-}  // namespace
-
 SourceOptions SourceOptionsFromFlags() {
   if (FLAGS_data_seed < -1) throw Error("--data_seed must be 0 or more, or -1: as --seed");
-
-  SourceOptions options = {
-      .noise = FLAGS_noise,
-      .missing = FLAGS_missing,
-      .corrupt = FLAGS_corrupt,
-      .tilt_deg = TiltFromFlag(),
-      .seed = static_cast<uint64_t>(FLAGS_data_seed < 0 ? FLAGS_seed : FLAGS_data_seed),
-      .num_threads = ThreadsFromFlags(),
-      .max_angle_deg = FLAGS_max_angle,
-      .min_theta_d_deg = FLAGS_min_theta_d,
-      .extrapolated = FLAGS_extrapolated,
-      .outliers = FLAGS_outliers,
-      .dark_noise = FLAGS_dark_noise,
-      .radiometry = FLAGS_radiometry,
-      .columns = FLAGS_columns,
-      .theta_i_deg = FLAGS_theta_i,
-      .bands = FLAGS_bands};
-  SetCosine(FLAGS_cosine, &options);
-  options.scale = FLAGS_scale;
-  options.azimuth_from_mirror = IsFromMirror(FLAGS_azimuth);
+  SourceOptions options = {.seed = static_cast<uint64_t>(FLAGS_seed),
+                           .num_threads = ThreadsFromFlags()};
+  for (const SourceOption& option : AllSourceOptions()) {
+    const auto flag = gflags::GetCommandLineFlagInfoOrDie(option.name.c_str());
+    if (flag.current_value != flag.default_value) option.set(flag.current_value, &options);
+  }
   CheckSourceOptions(options);
   return options;
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",    "missing",    "corrupt",    "tilt",      "cosine",      "scale",
-          "azimuth",  "seed",       "data_seed",  "max_angle", "min_theta_d", "extrapolated",
-          "outliers", "dark_noise", "radiometry", "columns",   "theta_i",     "bands"};
+  std::vector<std::string> flags;
+  for (const SourceOption& option : AllSourceOptions()) {
+    if (option.name == "data_seed") flags.emplace_back("seed");
+    flags.push_back(option.name);
+  }
+  return flags;
 }
 
 std::vector<std::string> Split(const std::string& text, char separator) {

@@ -95,9 +95,10 @@ void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& o
   if (fit.full.mean_delta_e) {
     const auto line = [&](const char* what, const SceneScore& score) {
       out << what << "mean Delta E " << Text(*score.mean_delta_e, 3) << ", PSNR "
-          << Text(*score.sphere_psnr_db, 4) << " dB";
+          << Text(*score.seen_psnr_db, 4) << " dB";
     };
-    line("  sphere:   with nothing left out ", fit.full);
+    out << (fit.judged_by_reads ? "  reads:    " : "  sphere:   ");
+    line("with nothing left out ", fit.full);
     line("; as it is ", fit.pruned);
     out << "\n";
   }
@@ -138,6 +139,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
       {"verdict", fit.verdict},
       {"data_notes", fit.data_notes},
       {"budget", ToJson(material.budget)},
+      {"misses_budget", fit.misses_budget},
       {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},
       {"lobes", fit.file.model.spec().lobes},
       {"parameters", {{"full", fit.full_parameters}, {"pruned", fit.num_parameters}}},
@@ -150,8 +152,8 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
       {"decisions", decisions}};
   if (fit.full.mean_delta_e) {
     json["mean_delta_e"] = {{"full", *fit.full.mean_delta_e}, {"pruned", *fit.pruned.mean_delta_e}};
-    json["sphere_psnr_db"] = {{"full", *fit.full.sphere_psnr_db},
-                              {"pruned", *fit.pruned.sphere_psnr_db}};
+    json["seen_psnr_db"] = {{"full", *fit.full.seen_psnr_db}, {"pruned", *fit.pruned.seen_psnr_db}};
+    json["judged_by"] = fit.judged_by_reads ? "reads" : "sphere";
   }
   return json;
 }

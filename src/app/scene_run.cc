@@ -43,21 +43,8 @@ FitCache CacheFromFlags() {
 }  // namespace
 
 std::vector<std::string> SceneFlags() {
-  return {"solver",
-          "weighting",
-          "lobes",
-          "max_iterations",
-          "max_seconds",
-          "tolerance",
-          "optimality_tolerance",
-          "threads",
-          "noise",
-          "seed",
-          "max_angle",
-          "min_theta_d",
-          "extrapolated",
-          "cache",
-          "nocache"};
+  return WithSourceFlags({"solver", "weighting", "lobes", "max_iterations", "max_seconds",
+                          "tolerance", "optimality_tolerance", "cache", "nocache"});
 }
 
 std::vector<std::string> SceneModelFlags() {
@@ -71,17 +58,13 @@ SceneFitSettings SceneSettingsFromFlags() {
   const SolverEntry& solver = SolverFromFlags();
   const ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes);
   CheckSpec(spec);
-  const SourceOptions source = SourceOptionsFromFlags();
   SceneFitSettings settings{.solver = solver.name,
                             .options = SolverOptionsFromFlags(solver, spec),
                             .init = InitialModels().front().name,
                             .weighting = FindWeighting(FLAGS_weighting).name,
                             .lobes = FLAGS_lobes,
-                            .noise = source.noise,
-                            .seed = source.seed,
-                            .max_angle_deg = source.max_angle_deg,
-                            .min_theta_d_deg = source.min_theta_d_deg,
-                            .extrapolated = source.extrapolated,
+                            .seed = static_cast<uint64_t>(FLAGS_seed),
+                            .source = SourceOptionsFromFlags(),
                             .program = ProgramName(),
                             .build = ProgramBuild(),
                             .appearance = AppearanceOptionsFromFlags(),

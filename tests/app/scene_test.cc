@@ -4,17 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "io/formats/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
+#include "trilobe/core/math/angles.h"
 #include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/materials/load_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -51,6 +56,25 @@ std::string FewSamples(const TemporaryFolder& folder, const std::string& materia
       RunProgram({"convert", "synth:" + material, "--missing=0.95", "--out=" + path});
   EXPECT_EQ(made.status, 0) << made.err;
   return path;
+}
+
+// The flags of a command, with their defaults, as its help has them.
+std::map<std::string, std::string> HelpFlags(const std::string& command) {
+  std::map<std::string, std::string> flags;
+  std::istringstream help(RunProgram({"help", command}).out);
+  for (std::string line; std::getline(help, line);) {
+    const size_t equal = line.find('=');
+    if (!line.starts_with("  --") || equal == std::string::npos) continue;
+    flags[line.substr(4, equal - 4)] = line.substr(equal + 1);
+  }
+  return flags;
+}
+
+// A value of the same type as the default.
+std::string OtherValue(const std::string& value) {
+  if (value == "true" || value == "false") return value == "true" ? "false" : "true";
+  const bool number = !value.empty() && value.find_first_not_of("0123456789.e-") == value.npos;
+  return value == "..." || !number ? "x" : value.starts_with("-") ? "3" : "1" + value;
 }
 
 nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
@@ -161,10 +185,9 @@ TEST(Scene, IsScoredAsItWasPlanned) {
     EXPECT_EQ(planned["psnr_db"]["pruned"], scored["psnr_db"]) << model;
     const nlohmann::json& verdict = scored["verdict"];
     EXPECT_THAT(verdict["words"], HasSubstr(planned["verdict"].get<std::string>())) << model;
-    EXPECT_EQ(planned.contains("mean_delta_e"), verdict["of"] == "sphere");
-    if (!planned.contains("mean_delta_e")) continue;
+    EXPECT_EQ(planned["judged_by"], "sphere");
     EXPECT_EQ(planned["mean_delta_e"]["pruned"], verdict["mean_delta_e"]) << model;
-    EXPECT_EQ(planned["sphere_psnr_db"]["pruned"], verdict["psnr_db"]) << model;
+    EXPECT_EQ(planned["seen_psnr_db"]["pruned"], verdict["psnr_db"]) << model;
   }
 }
 
@@ -352,6 +375,67 @@ TEST(Scene, DoesNotOverwriteItsOwnFiles) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, HasSubstr("would destroy"));
   EXPECT_EQ(Contents(scene), before);
+}
+
+// A scene takes the flags of a measurement, and a file says others for single materials.
+TEST(Scene, ReadsMeasurementsAsItIsTold) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "odd.csv") << [] {
+    std::string text;
+    for (int k = 0; k < 64; ++k) {
+      const int i = 10 * (k % 8), o = 10 * (k / 8);
+      const std::string f = std::to_string(25 * std::cos(o * kPi / 180));
+      text += std::to_string(i) + ",0," + std::to_string(o) + ",90," + f + "\n";
+    }
+    return text;
+  }();
+  const std::string flags[] = {"--columns=theta_i,phi_i,theta_o,phi_o,f", "--cosine=o:1",
+                               "--scale=0.01"};
+  const std::string options = R"(, "options": {"columns": "theta_i,phi_i,theta_o,phi_o,f",
+                                               "cosine": "o:1", "scale": 0.01})";
+  const auto scene_with = [&](const std::string& name, const std::string& own) {
+    const std::string path = folder / (name + ".json");
+    std::ofstream(path) << R"({"format": "trilobe-scene", "version": 1,
+      "materials": [{"name": "grey", "source": "odd.csv")" +
+                               own + "}]}";
+    return path;
+  };
+  const std::string plain = scene_with("plain", ""), told = scene_with("told", options);
+  const auto fit = [&](const std::string& scene, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"fit", "--scene=" + scene, "--nocache",
+                                          "--out=" + (folder / "out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunQuickly(folder, arguments);
+  };
+  EXPECT_THAT(fit(plain, {}).err, HasSubstr("--columns"));
+  const ProgramResult by_flags = fit(plain, {std::begin(flags), std::end(flags)});
+  ASSERT_EQ(by_flags.status, 0) << by_flags.err;
+  const FactorModel model = ReadModel(folder / "out/grey.json").model;
+  EXPECT_NEAR(Evaluate(model, {{0, 0, 1}, {0, 0.6, 0.8}})[0], 0.25, 0.01);
+  const ProgramResult by_file = fit(told, {"--scale=3"});  // the material's own goes first
+  ASSERT_EQ(by_file.status, 0) << by_file.err;
+  EXPECT_TRUE(std::ranges::equal(ReadModel(folder / "out/grey.json").model.parameters(),
+                                 model.parameters()));
+  EXPECT_THAT(RunProgram({"plan", scene_with("bad", R"(, "options": {"scale": "much"})")}).err,
+              HasSubstr("/materials/0/options/scale: --scale=much"));
+  EXPECT_THAT(RunProgram({"plan", scene_with("bad", R"(, "options": {"noize": 1})")}).err,
+              HasSubstr("did you mean 'noise'"));
+}
+
+// A scene uses each flag of `fit`, or refuses it by name.
+TEST(Scene, TakesEachFlagOrRefusesIt) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder);
+  const std::map<std::string, std::string> taken = HelpFlags("plan"), all = HelpFlags("fit");
+  EXPECT_GT(all.size(), 40);
+  for (const auto& [flag, value] : all) {
+    if (flag == "scene" || flag == "out" || taken.contains(flag)) continue;
+    const ProgramResult result = RunProgram({"fit", "--scene=" + scene, "--out=" + (folder / "o"),
+                                             "--" + flag + "=" + OtherValue(value)});
+    EXPECT_EQ(result.status, 1) << flag;
+    EXPECT_THAT(result.err, HasSubstr("--" + flag)) << flag;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "o"));
 }
 
 TEST(Scene, BadUseIsAnError) {

@@ -134,14 +134,23 @@ PruneState FitLobes(std::vector<LobeStart> starts, double wanted, const Pruning&
 }
 
 // What a lobe more is tried for, and what comes of it.
-std::string WhyAdded(const Pruning& pruning, double E, bool within) {
+std::string WhyAdded(const Pruning& pruning, double E, bool taken, bool within) {
   const int lobes = pruning.state().lobes();
   const std::string reason = pruning.by_parameters()
                                  ? "the budget has room for more parameters"
                                  : "with " + LobesText(lobes) + " the budget is missed";
   const std::string comes_of_it =
-      E < pruning.state().E ? pruning.CompareWithFull(E, within) : "E does not fall";
+      taken ? pruning.CompareWithFull(E, within) : "it brings the model hardly nearer to that";
   return reason + "; " + comes_of_it;
+}
+
+// Whether a lobe more takes a tenth off what the budget is missed by, or off E where parameters are
+// the budget.
+bool IsWorthALobe(const Pruning& pruning, const PruneState& next) {
+  constexpr double kShare = 0.1;
+  if (pruning.by_parameters()) return next.E < pruning.state().E;
+  const double cost = pruning.Cost(pruning.state());
+  return cost - pruning.Cost(next) >= kShare * (cost - pruning.max_cost());
 }
 
 // Tries the next number of lobes; true if it was taken.
@@ -157,10 +166,10 @@ bool TryLobes(std::vector<LobeStart> starts, double wanted, Pruning* pruning) {
   if (pruning->options().stop()) return false;
   const bool within = next.E <= wanted && pruning->KeepsToBudget(next);
   const bool adds = lobes > state.lobes();
-  const bool taken = adds ? next.E < state.E : within;
+  const bool taken = adds ? IsWorthALobe(*pruning, next) : within;
   const std::string what = LobesText(lobes) + " instead of " + LobesText(state.lobes());
   const std::string why =
-      adds ? WhyAdded(*pruning, next.E, within) : pruning->CompareWithFull(next.E, within);
+      adds ? WhyAdded(*pruning, next.E, taken, within) : pruning->CompareWithFull(next.E, within);
   return pruning->Decide(what, std::move(next), taken, why);
 }
 
@@ -168,8 +177,8 @@ bool TryLobes(std::vector<LobeStart> starts, double wanted, Pruning* pruning) {
 bool SparesError(const Pruning& pruning) {
   // Half of the budget: of decibels, or of an error that is seen.
   const double half = pruning.options().error
-                          ? (pruning.full_error() + pruning.max_error()) / 2
-                          : std::sqrt(pruning.full_error() * pruning.max_error());
+                          ? (pruning.base_error() + pruning.max_error()) / 2
+                          : std::sqrt(pruning.base_error() * pruning.max_error());
   return pruning.ErrorOf(pruning.state()) < half;
 }
 
@@ -181,12 +190,12 @@ void ThinWithin(double limit, Pruning* pruning) {
       std::min(pruning->limit(), std::max(limit, least * pruning->state().E)));
   ChooseShape(pruning);
   ThinTables(pruning);
-  if (!pruning->limits_error()) return;
+  if (!pruning->limits_error() || pruning->options().error) return;
   for (int round = 0; round < kStretches && SparesError(*pruning); ++round) {
     if (pruning->search_limit() >= pruning->limit()) return;
     pruning->set_search_limit(
         std::min(pruning->limit(),
-                 pruning->E_full() + kStretch * (pruning->search_limit() - pruning->E_full())));
+                 pruning->E_base() + kStretch * (pruning->search_limit() - pruning->E_base())));
     ThinTables(pruning);
   }
 }
@@ -206,7 +215,7 @@ void SpendBudget(Pruning* pruning) {
     last_lobe = pruning->decisions().size() - 1;
     dear = pruning->options().error
                ? !SparesError(*pruning)
-               : state.E - pruning->E_full() > kDear * (wanted - pruning->E_full());
+               : state.E - pruning->E_base() > kDear * (wanted - pruning->E_base());
     with_one_more = std::move(before);
   }
   ThinWithin(limit, pruning);
@@ -223,18 +232,22 @@ void SpendBudget(Pruning* pruning) {
   }
 }
 
+// For a budget that the full model misses. Where no number of lobes meets it, the smallest form is
+// sought that is nearly as good as the best.
 void AddLobes(Pruning* pruning) {
   const PruneState& state = pruning->state();
   while (!pruning->KeepsToBudget(state) && state.lobes() < pruning->options().max_lobes) {
     std::vector<LobeStart> starts = LobeStarts(WithOneLobeMore(state.model));
     if (starts.empty() || !TryLobes(std::move(starts), pruning->search_limit(), pruning)) break;
   }
-  if (!pruning->KeepsToBudget(state)) {
-    pruning->Record("all else", state, false, "the budget asks for a better fit than was found");
-  } else {
+  if (pruning->KeepsToBudget(state)) {
     ChooseShape(pruning);
     ThinTables(pruning);
+    return;
   }
+  pruning->Record(kWithinBudget, state, false, "none was found; " + std::string(kSoughtInstead));
+  pruning->SettleForState();
+  SpendBudget(pruning);
 }
 
 // The lowest E that max_parameters reach: with as many lobes as there are, then with fewer as long

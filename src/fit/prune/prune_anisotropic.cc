@@ -204,8 +204,8 @@ class AnisotropicPruning {
   // Where E with the prior is to go for that of the measured ones to go where it may.
   double Wanted() const {
     if (pruning_.by_parameters()) return 0;  // nothing can be given up: a few steps tell enough
-    if (pruning_.IsExact(pruning_.E_full())) return pruning_.search_limit();
-    return pruning_.E_full() > 0 ? E_with_prior_ * pruning_.search_limit() / pruning_.E_full() : 0;
+    if (pruning_.IsExact(pruning_.E_base())) return pruning_.search_limit();
+    return pruning_.E_base() > 0 ? E_with_prior_ * pruning_.search_limit() / pruning_.E_base() : 0;
   }
 
   const Objective& with_prior_;
@@ -236,7 +236,9 @@ PrunedModel PruneFurther(const Pruning& pruning, PruneOptions options) {
       options.max_psnr_drop_db = std::max(20 * std::log10(growth), 0.0);
     }
   }
+  options.max_error = pruning.max_error();
   PrunedModel further = Prune(*state.data, state.model, options);
+  further.misses_budget = further.misses_budget || pruning.misses_budget();
   std::vector<PruneDecision> decisions = pruning.decisions();
   std::ranges::move(further.decisions, std::back_inserter(decisions));
   further.decisions = std::move(decisions);
@@ -251,10 +253,9 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& with_pr
   Pruning& pruning = search.pruning();
   if (!pruning.KeepsToBudget(pruning.state())) {
     pruning.Record(
-        "all", pruning.state(), false,
-        "the budget asks for a better fit than was found, and an anisotropic one gets no "
-        "lobe more");
-    return pruning.Result(LobeOrder::kByLight);
+        kWithinBudget, pruning.state(), false,
+        "none was found, as an anisotropic one gets no lobe more; " + std::string(kSoughtInstead));
+    pruning.SettleForState();
   }
   if (pruning.by_parameters()) {
     search.ReduceTo(options.max_parameters);

@@ -60,8 +60,9 @@ struct PrunedModel {
   FactorModel model;   // with full-size tables, in canonical form
   TableLayout layout;  // which parameters are stored
   std::vector<PruneDecision> decisions;
-  double E = 0;            // Objective::Value of the model
-  int num_parameters = 0;  // stored
+  double E = 0;                // Objective::Value of the model
+  int num_parameters = 0;      // stored
+  bool misses_budget = false;  // no form was found that meets it
 };
 
 }  // namespace trilobe

@@ -30,7 +30,7 @@ constexpr double kSmallGain = 0.02, kSmallOfE = 1e-4;
 // tried, which grows again. It ends when few parameters went for all that was left.
 constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
-constexpr double kFewParameters = 0.04;
+constexpr double kFewParameters = 0.04, kFirstBite = 0.25;
 
 // Towards a budget of parameters: this part of those in excess goes at once, if they are more than
 // few.
@@ -56,7 +56,7 @@ void Polish(const Pruning& pruning, PruneState* state) {
   stepper.Restart(state->model);
   const double small = pruning.by_parameters()
                            ? kSmallOfE * state->E
-                           : kSmallGain * (pruning.search_limit() - pruning.E_full());
+                           : kSmallGain * (pruning.search_limit() - pruning.E_base());
   for (int step = 0; step < kMaxPolish && !stepper.exhausted(); ++step) {
     if (pruning.options().stop()) break;
     const double before = stepper.E();
@@ -155,6 +155,96 @@ int CountWithin(const std::vector<Elimination>& order, double rise) {
   return std::max(1, static_cast<int>(end - order.begin()));
 }
 
+// Of the way from one state to another that is beyond the budget, the part that keeps to it: E
+// rises evenly along it, and so does the square of an error.
+double ShareWithin(const Pruning& pruning, const PruneState& from, const PruneState& next) {
+  const double of_E = (pruning.search_limit() - from.E) / (next.E - from.E);
+  if (!pruning.limits_error()) return of_E;
+  const double before = pruning.ErrorOf(from), after = pruning.ErrorOf(next);
+  const double most = pruning.max_error();
+  if (!(after > most)) return of_E;
+  const double of_error = (most * most - before * before) / (after * after - before * before);
+  return next.E > pruning.search_limit() ? std::min(of_E, of_error) : of_error;
+}
+
+// Gives up nodes as long as many go at once.
+void ThinQuickly(Pruning* pruning) {
+  const bool by_parameters = pruning->by_parameters();
+  // Of what is left, to be spent next: less where predictions are too low, as of what is seen.
+  double share = pruning->options().error ? kFirstBite : 1;
+  for (int attempt = 0; attempt < kMaxAttempts && !pruning->options().stop();) {
+    const PruneState from = pruning->state();
+    const QuadraticModel& at = pruning->Linearized();
+    const std::vector<Elimination> order = OrderOfElimination(
+        at, from.model, from.layout, LimitsFor(*pruning, from.E, from.num_parameters()));
+    int count = static_cast<int>(order.size());
+    if (by_parameters && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
+    const double left = pruning->search_limit() - from.E;
+    bool worth_more = false;
+    for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
+      if (share < 1) count = std::min(count, CountWithin(order, share * left));
+      PruneState next = RemoveNodes(*pruning, order, count, at);
+      taken = WithinBudget(*pruning, next);
+      if (taken) {
+        const bool few = next.num_parameters() > (1 - kFewParameters) * from.num_parameters();
+        worth_more = by_parameters || share < 1 || !few;
+        share = std::min(1.0, kGrowth * share);
+        pruning->GoOnFrom(std::move(next));
+      } else {
+        share *= std::clamp(ShareWithin(*pruning, from, next), kMinCut, kMaxCut);
+      }
+    }
+    if (!worth_more) return;
+  }
+}
+
+// Gives up the nodes of a small model one by one: of those that raise E least, the one that is seen
+// least.
+void ThinSingly(Pruning* pruning) {
+  constexpr int kSmall = 100, kTries = 5;
+  while (pruning->state().num_parameters() <= kSmall) {
+    const PruneState& from = pruning->state();
+    const QuadraticModel& at = pruning->Linearized();
+    const std::vector<Elimination> order = OrderOfElimination(at, from.model, from.layout,
+                                                              {.max_rise = kInfinity,
+                                                               .max_count = from.num_parameters(),
+                                                               .may_thin = pruning->may_thin()});
+    double least = pruning->max_error();
+    std::optional<PruneState> best;
+    for (int k = 0; k < kTries && k < static_cast<int>(order.size()); ++k) {
+      if (pruning->options().stop()) return;
+      PruneState next = RemoveNodes(*pruning, {order[k]}, 1, at);
+      const double error = pruning->ErrorOf(next);
+      if (!(error <= least && next.E <= pruning->limit())) continue;
+      least = error;
+      best = std::move(next);
+    }
+    if (!best) return;
+    pruning->GoOnFrom(*std::move(best));
+  }
+}
+
+// Where an error is limited, E only leads the way. So the error grows in stages: what a tighter
+// budget could do without, a looser one does without, too.
+void ThinByStages(Pruning* pruning) {
+  constexpr double kStages[] = {0.4, 1};
+  constexpr double kRoom = 3;  // for E, of what it is
+  const double most = pruning->max_error(), least = pruning->ErrorOf(pruning->state());
+  for (const double stage : kStages) {
+    pruning->set_max_error(least + stage * (most - least));
+    pruning->set_search_limit(
+        std::min(pruning->limit(), std::max(pruning->search_limit(), kRoom * pruning->state().E)));
+    ThinQuickly(pruning);
+    ThinSingly(pruning);
+  }
+}
+
+// Whether a shape leaves half of the error that is left to nodes, which use it better.
+bool LeavesRoom(const Pruning& pruning, const PruneState& next) {
+  if (!pruning.options().error) return true;
+  return pruning.ErrorOf(next) <= (pruning.ErrorOf(pruning.state()) + pruning.max_error()) / 2;
+}
+
 }  // namespace
 
 void ChooseShape(Pruning* pruning) {
@@ -188,7 +278,7 @@ void ChooseShape(Pruning* pruning) {
     next.layout = option.layout;
     next.E = next.data->Value(next.model);
     Polish(*pruning, &next);
-    const bool taken = WithinBudget(*pruning, next);
+    const bool taken = WithinBudget(*pruning, next) && LeavesRoom(*pruning, next);
     const std::string why = pruning->CompareWithFull(next.E, taken);
     if (pruning->Decide(option.shape.name, std::move(next), taken, why)) return;
   }
@@ -196,31 +286,10 @@ void ChooseShape(Pruning* pruning) {
 
 void ThinTables(Pruning* pruning) {
   const PruneState before = pruning->state();
-  const bool by_parameters = pruning->by_parameters();
-  double share = 1;  // of what is left, to be spent next: less where predictions are too low
-  for (int attempt = 0; attempt < kMaxAttempts && !pruning->options().stop();) {
-    const PruneState from = pruning->state();
-    const QuadraticModel& at = pruning->Linearized();
-    const std::vector<Elimination> order = OrderOfElimination(
-        at, from.model, from.layout, LimitsFor(*pruning, from.E, from.num_parameters()));
-    int count = static_cast<int>(order.size());
-    if (by_parameters && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
-    const double left = pruning->search_limit() - from.E;
-    bool worth_more = false;
-    for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
-      if (share < 1) count = std::min(count, CountWithin(order, share * left));
-      PruneState next = RemoveNodes(*pruning, order, count, at);
-      taken = WithinBudget(*pruning, next);
-      if (taken) {
-        const bool few = next.num_parameters() > (1 - kFewParameters) * from.num_parameters();
-        worth_more = by_parameters || share < 1 || !few;
-        share = std::min(1.0, kGrowth * share);
-        pruning->GoOnFrom(std::move(next));
-      } else {
-        share *= std::clamp(left / (next.E - from.E), kMinCut, kMaxCut);
-      }
-    }
-    if (!worth_more) break;
+  if (pruning->options().error) {
+    ThinByStages(pruning);
+  } else {
+    ThinQuickly(pruning);
   }
   if (pruning->state().num_parameters() == before.num_parameters()) return;
   PruneState after = pruning->GoOnFrom(before);

@@ -41,6 +41,7 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
       options_(options),
       state_(MakeState(objective.spec(), full)),
       E_full_(state_.E),
+      E_base_(state_.E),
       E_of_prior_(&data == &objective ? 0 : objective.Value(state_.model) - E_full_),
       by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
   if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
@@ -60,9 +61,9 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
   // Where E is the squared error, that grows by as much at this E; elsewhere it is a start.
   if (options.error) {
     error_ = [this](const PruneState& state) { return options_.error(state.model); };
-    full_error_ = ErrorOf(state_);
+    base_error_ = ErrorOf(state_);
     max_error_ = options.max_error;
-    const double growth = full_error_ > 0 ? max_error_ / full_error_ : kInfinity;
+    const double growth = base_error_ > 0 ? max_error_ / base_error_ : kInfinity;
     search_limit_ = growth * growth * E_full_;
     // Of an exact model no multiple says anything: then the E of a good fit is where to begin.
     if (IsExact(E_full_)) search_limit_ = std::max(search_limit_, kGoodFit * data.MeasuredEnergy());
@@ -70,8 +71,8 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
   } else if (std::isfinite(options.max_psnr_drop_db)) {
     error_ = ErrorByPsnr;
     const double growth = std::pow(10, options.max_psnr_drop_db / 20);
-    full_error_ = ErrorOf(state_);
-    max_error_ = growth * full_error_;
+    base_error_ = ErrorOf(state_);
+    max_error_ = growth * base_error_;
     search_limit_ = std::min(limit_, growth * growth * E_full_);
   }
   const bool relative = !options.error && options.max_relative_rise > 0;
@@ -115,12 +116,26 @@ const QuadraticModel& Pruning::Linearized() {
 
 bool Pruning::IsExact(double E) const { return E <= kPracticallyZero * data_.MeasuredEnergy(); }
 
-bool Pruning::may_rise() const { return search_limit_ > E_full_ * (1 + kRounding); }
+bool Pruning::may_rise() const { return search_limit_ > E_base_ * (1 + kRounding); }
 
 bool Pruning::KeepsToBudget(const PruneState& state) const {
   if (by_parameters_) return true;
   if (!(state.E <= limit_ * (1 + kRounding))) return false;
   return !limits_error() || ErrorOf(state) <= max_error_;
+}
+
+void Pruning::SettleForState() {
+  constexpr double kNearBest = 1.1;
+  misses_budget_ = true;
+  E_base_ = state_.E;
+  if (limits_error()) {
+    base_error_ = ErrorOf(state_);
+    max_error_ = kNearBest * base_error_;
+    limit_ = kInfinity;
+    search_limit_ = std::min(kNearBest * kNearBest * E_base_, data_.MeasuredEnergy());
+  } else {
+    limit_ = search_limit_ = kNearBest * E_base_;
+  }
 }
 
 std::string Pruning::CompareWithFull(double E, bool within) const {
@@ -170,6 +185,7 @@ PrunedModel Pruning::Result(LobeOrder order) const {
     ExpandStored(result.layout, &result.model);
   }
   result.E = state_.data->Value(result.model);
+  result.misses_budget = misses_budget_;
   return result;
 }
 

@@ -24,6 +24,11 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // "no lobe", "one lobe", "2 lobes".
 std::string LobesText(int lobes);
 
+// What a plan says where no form meets the budget (SettleForState).
+inline constexpr const char* kWithinBudget = "a fit within the budget";
+inline constexpr const char* kSoughtInstead =
+    "the smallest that is within 10 % of the best was sought instead";
+
 // An intermediate model of pruning, with the objectives of its spec.
 struct PruneState {
   std::shared_ptr<const Objective> objective;  // minimised by fits
@@ -65,6 +70,8 @@ class Pruning {
   // Whether the budget is in parameters and E is minimised; else E has a limit.
   bool by_parameters() const { return by_parameters_; }
   double E_full() const { return E_full_; }
+  // E of what the search began from: of the full model, or of what came nearest to the budget.
+  double E_base() const { return E_base_; }
   // Whether E is 0 up to rounding.
   bool IsExact(double E) const;
   bool may_rise() const;  // by more than rounding
@@ -78,10 +85,17 @@ class Pruning {
   // The error besides E (PruneOptions::error, or by PSNR) and its limit; 0 if only E is limited.
   bool limits_error() const { return error_ != nullptr; }
   double ErrorOf(const PruneState& state) const { return error_ ? error_(state) : 0; }
-  double full_error() const { return full_error_; }
+  double base_error() const { return base_error_; }  // as E_base
   double max_error() const { return max_error_; }
+  void set_max_error(double error) { max_error_ = error; }
   // Whether a state's E and error are within the budget.
   bool KeepsToBudget(const PruneState& state) const;
+  // What is limited: the error, or else E.
+  double Cost(const PruneState& state) const { return error_ ? error_(state) : state.E; }
+  double max_cost() const { return error_ ? max_error_ : limit_; }
+  // Of the same for a budget that nothing meets: it becomes the state's cost and a tenth more.
+  void SettleForState();
+  bool misses_budget() const { return misses_budget_; }
   // Text that compares E with the full model's.
   std::string CompareWithFull(double E, bool within) const;
 
@@ -100,9 +114,10 @@ class Pruning {
   const FactorModel& full_;
   const PruneOptions& options_;
   PruneState state_;
-  double E_full_ = 0, E_of_prior_ = 0;
+  double E_full_ = 0, E_base_ = 0, E_of_prior_ = 0;
+  bool misses_budget_ = false;
   std::function<double(const PruneState&)> error_;
-  double full_error_ = 0, max_error_ = 0;
+  double base_error_ = 0, max_error_ = 0;
   bool by_parameters_ = false;
   double limit_ = kInfinity;
   double search_limit_ = kInfinity;

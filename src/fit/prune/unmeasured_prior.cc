@@ -101,6 +101,7 @@ Objective UnmeasuredPrior::JoinTo(const Objective& objective) const {
     return {std::move(both), objective.spec(), objective.weighting(), objective.num_threads()};
   }
   BrdfSamples both{measured.source, measured.grid, {}, {}, {}};
+  both.counted = measured.counted;
   for (int j = 0, k = 0; j < measured.size() || k < samples_.size();) {
     const bool own =
         k == samples_.size() || (j < measured.size() && measured.bins[j] < samples_.bins[k]);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/system/content_hash.h"
+#include "io/formats/source_option.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/evaluate/read_model.h"
 #include "trilobe/solvers/registry/solvers.h"
@@ -62,17 +62,12 @@ struct DirectionsText {
 
 Key KeyOfFullFit(const SceneMaterial& material, const SceneFitSettings& settings,
                  const std::string& source_hash, const std::string& purpose) {
-  Key key("fit 3, " + purpose);
+  Key key("fit 4, " + purpose);
   key.Add("program", settings.program);
   key.Add("build", settings.build);
   key.Add("source", source_hash);
-  if (IsSynthetic(material.source)) {
-    key.Add("noise", settings.noise);
-    key.Add("synth_seed", settings.seed);
-  }
-  key.Add("max_angle", settings.max_angle_deg);
-  key.Add("min_theta_d", settings.min_theta_d_deg);
-  key.Add("extrapolated", settings.extrapolated);
+  const SourceOptions source = WithOptionsOf(material, settings.source);
+  for (const SourceOption& option : AllSourceOptions()) key.Add(option.name, option.get(source));
   key.Add("directions",
           material.reductions.samples ? std::visit(DirectionsText(), material.directions) : "all");
   key.Add("luminance", material.channels == SceneChannels::kLuminance);
@@ -112,7 +107,7 @@ Json Encode(const SceneScore& score) {
   Json json = {{"objective", score.objective}, {"psnr_db", EncodeDecibels(score.psnr_db)}};
   if (score.mean_delta_e) {
     json["mean_delta_e"] = *score.mean_delta_e;
-    json["sphere_psnr_db"] = EncodeDecibels(*score.sphere_psnr_db);
+    json["seen_psnr_db"] = EncodeDecibels(*score.seen_psnr_db);
   }
   return json;
 }
@@ -121,7 +116,7 @@ SceneScore DecodeScore(const Json& json) {
   SceneScore score = {json.at("objective"), DecodeDecibels(json.at("psnr_db"))};
   if (json.contains("mean_delta_e")) {
     score.mean_delta_e = json.at("mean_delta_e");
-    score.sphere_psnr_db = DecodeDecibels(json.at("sphere_psnr_db"));
+    score.seen_psnr_db = DecodeDecibels(json.at("seen_psnr_db"));
   }
   return score;
 }
@@ -143,13 +138,16 @@ Json Encode(const MaterialFit& fit) {
           {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
           {"numbers", fit.num_parameters},    {"decisions", decisions},
           {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds},
-          {"data_notes", fit.data_notes},     {"verdict", fit.verdict}};
+          {"data_notes", fit.data_notes},     {"verdict", fit.verdict},
+          {"by_reads", fit.judged_by_reads},  {"misses_budget", fit.misses_budget}};
 }
 
 MaterialFit DecodeMaterialFit(const Json& json) {
   MaterialFit fit;
   fit.data_notes = json.at("data_notes");
   fit.verdict = json.at("verdict");
+  fit.judged_by_reads = json.at("by_reads");
+  fit.misses_budget = json.at("misses_budget");
   fit.valid_samples = json.at("valid_samples");
   fit.used_samples = json.at("used_samples");
   fit.full_parameters = json.at("full_numbers");
@@ -197,7 +195,7 @@ std::string FullFitKey(const SceneMaterial& material, const SceneFitSettings& se
 std::string MaterialFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
                            const std::string& source_hash) {
   Key key = KeyOfFullFit(material, settings, source_hash, "scene");
-  key.Add("then", "prune 9");
+  key.Add("then", "prune 10");
   key.Add("unit", static_cast<int>(material.budget.unit));
   key.Add("amount", material.budget.amount);
   if (material.budget.of_appearance()) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 
 #include "core/files/little_endian.h"
 #include "model/measurement/sample_density.h"
@@ -18,15 +20,23 @@ std::string Text(const MerlGrid& grid) {
          std::to_string(grid.phi_d);
 }
 
-int BinOf(const BrdfSamples& samples, int j) {
-  return samples.on_grid() ? samples.bins[j] : samples.grid.Bin(samples.angles[j]);
-}
-
-// The numbers of the samples that are used, and how often each counts; empty for always once.
+// The numbers of the samples that are used, and how often each is read; empty where nothing says
+// that.
 struct Selection {
   std::vector<int> numbers;
-  std::vector<double> multiplicity = {};
+  std::vector<double> reads = {};
 };
+
+// Those that are read at all.
+Selection ThoseRead(const std::vector<double>& reads) {
+  Selection selection;
+  for (size_t j = 0; j < reads.size(); ++j) {
+    if (!(reads[j] > 0)) continue;
+    selection.numbers.push_back(static_cast<int>(j));
+    selection.reads.push_back(reads[j]);
+  }
+  return selection;
+}
 
 template <typename Uses>
 Selection Where(const BrdfSamples& samples, const Uses& uses) {
@@ -55,22 +65,15 @@ Selection Select(const BrdfSamples& samples, const DirectionRanges& ranges) {
 }
 
 Selection Select(const BrdfSamples& samples, const DirectionList& list) {
-  const MerlGrid& grid = samples.grid;
-  std::vector<bool> used(grid.size(), false);
+  const SamplesOfBins samples_of(samples);
+  std::vector<double> reads(samples.rho.size(), 0.0);
   for (const HalfDiffAngles& angles : list.directions) {
-    const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
-    const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);
-    const int below = static_cast<int>(std::floor(angles.phi_d / kPi * grid.phi_d - 0.5));
-    for (const int p : {(below + grid.phi_d) % grid.phi_d, (below + 1) % grid.phi_d}) {
-      for (int a = 0; a < h.size; ++a) {
-        for (int b = 0; b < d.size; ++b) {
-          used[grid.Index(h.index[a], d.index[b], p)] = true;
-          used[grid.Index(h.index[a], d.index[b], grid.phi_d - 1 - p)] = true;
-        }
-      }
+    for (const BinShare& bin : BinsAround(samples.grid, angles)) {
+      const std::vector<int>& inside = samples_of(bin.bin);
+      for (const int j : inside) reads[j] += bin.share / static_cast<double>(inside.size());
     }
   }
-  return Where(samples, [&](int j) { return used[BinOf(samples, j)]; });
+  return ThoseRead(reads);
 }
 
 Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram) {
@@ -79,16 +82,46 @@ Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram
                 " bins, but the measurement " + samples.source + " has " + Text(samples.grid) +
                 "; count over theta_h, theta_d, phi_d of the measurement's grid");
   }
-  const auto count = [&](int j) { return histogram.counts[BinOf(samples, j)]; };
-  Selection selection = Where(samples, [&](int j) { return count(j) > 0; });
-  double sum = 0;
-  for (const int j : selection.numbers) sum += count(j);
-  const double mean = sum / static_cast<double>(selection.numbers.size());
-  for (const int j : selection.numbers) selection.multiplicity.push_back(count(j) / mean);
-  return selection;
+  std::vector<double> reads;
+  for (int j = 0; j < samples.size(); ++j) reads.push_back(histogram.counts[BinOf(samples, j)]);
+  return ThoseRead(reads);
 }
 
 }  // namespace
+
+std::vector<BinShare> BinsAround(const MerlGrid& grid, const HalfDiffAngles& angles) {
+  const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
+  const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);
+  const double phi = angles.phi_d / kPi * grid.phi_d - 0.5, below = std::floor(phi);
+  const int first = static_cast<int>(below);
+  std::vector<BinShare> shares;
+  for (const auto& [p, of_phi] : {std::pair(first + grid.phi_d, 1 - (phi - below)),
+                                  std::pair(first + 1 + grid.phi_d, phi - below)}) {
+    for (int a = 0; a < h.size; ++a) {
+      for (int b = 0; b < d.size; ++b) {
+        const double share = of_phi * h.weight[a] * d.weight[b] / 2;
+        const int at = p % grid.phi_d;
+        shares.push_back({grid.Index(h.index[a], d.index[b], at), share});
+        shares.push_back({grid.Index(h.index[a], d.index[b], grid.phi_d - 1 - at), share});
+      }
+    }
+  }
+  return shares;
+}
+
+int BinOf(const BrdfSamples& samples, int j) {
+  return samples.on_grid() ? samples.bins[j] : samples.grid.Bin(samples.angles[j]);
+}
+
+SamplesOfBins::SamplesOfBins(const BrdfSamples& samples) {
+  for (int j = 0; j < samples.size(); ++j) samples_[BinOf(samples, j)].push_back(j);
+}
+
+const std::vector<int>& SamplesOfBins::operator()(int bin) const {
+  static const std::vector<int> none;
+  const auto found = samples_.find(bin);
+  return found == samples_.end() ? none : found->second;
+}
 
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source) {
   constexpr size_t kHeader = 3 * sizeof(int32_t);
@@ -140,8 +173,15 @@ BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& direc
                 ": no valid sample lies in the directions that the scene uses; widen them");
   }
   BrdfSamples used = Selected(samples, selection.numbers);
-  used.multiplicity = selection.multiplicity;
-  if (!anisotropic) EvenOutDensity(&used);
+  if (!selection.reads.empty()) {
+    used.counted = true;
+    used.multiplicity = selection.reads;
+    const double mean = std::accumulate(selection.reads.begin(), selection.reads.end(), 0.0) /
+                        static_cast<double>(selection.reads.size());
+    for (double& times : used.multiplicity) times /= mean;
+  } else if (!anisotropic) {
+    EvenOutDensity(&used);
+  }
   return used;
 }
 

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct DirectionRanges {
   Range theta_i, theta_o;
 };
 
-// Pairs of directions. Each uses the eight bins from which its value is interpolated.
+// Pairs of directions. Each uses the bins from which its value is interpolated (BinsAround), by
+// their shares in it.
 struct DirectionList {
   std::vector<HalfDiffAngles> directions;
 };
@@ -46,10 +48,33 @@ using SceneDirections =
 // order of a plane of a MERL file, little-endian. Throws Error that names `source`.
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source);
 
-// The used samples with their multiplicity. That of a histogram is scaled to a mean of 1, which
-// keeps E comparable with an unweighted fit. Those of an isotropic material, scattered, count less
-// where they are dense, as in SamplesOf. Throws Error if none is left, or if a histogram is on
-// another grid than the samples.
+// The bins between whose centres a pair of directions lies, eight at most, and their mirror bins,
+// whose directions are exchanged; with the shares of their values in the interpolated one, which
+// add up to 1. A bin may occur twice.
+struct BinShare {
+  int bin;
+  double share;
+};
+std::vector<BinShare> BinsAround(const MerlGrid& grid, const HalfDiffAngles& angles);
+
+// The bin of a sample.
+int BinOf(const BrdfSamples& samples, int j);
+
+// The samples of each bin.
+class SamplesOfBins {
+ public:
+  explicit SamplesOfBins(const BrdfSamples& samples);
+  const std::vector<int>& operator()(int bin) const;
+
+ private:
+  std::unordered_map<int, std::vector<int>> samples_;
+};
+
+// The used samples. With a list or a histogram their multiplicity says how often each is read, in
+// the place of solid angles (BrdfSamples::counted), scaled to a mean of 1, which keeps E comparable
+// with an unweighted fit. Others of an isotropic material, scattered, count less where they are
+// dense, as in SamplesOf. Throws Error if none is left, or if a histogram is on another grid than
+// the samples.
 BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions,
                         bool anisotropic = false);
 

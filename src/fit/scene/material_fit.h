@@ -9,6 +9,7 @@
 #include "fit/prune/prune.h"
 #include "fit/scene/fit_cache.h"
 #include "trilobe/core/base/stop_check.h"
+#include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/objective/score.h"
@@ -23,12 +24,9 @@ struct SceneFitSettings {
   std::string init;
   std::string weighting;
   int lobes = 3;
-  double noise = 0;  // of synth: sources
-  uint64_t seed = 1;
-  // What counts as measured, as in SourceOptions:
-  double max_angle_deg = 90;
-  double min_theta_d_deg = -1;
-  bool extrapolated = false;
+  uint64_t seed = 1;  // of the start
+  // How measurements are read, but for what SceneMaterial::options says; num_threads is replaced.
+  SourceOptions source;
   std::string program;  // "trilobe 0.1.0", for model files
   std::string build;    // build of the program; fits of another build are not reused
   // For budgets of appearance and verdicts; num_threads is replaced.
@@ -43,8 +41,8 @@ struct SceneFitSettings {
 struct SceneScore {
   double objective = 0;  // E
   double psnr_db = 0;
-  // Of the sphere as the scene sees it; given for a budget of appearance or a verdict.
-  std::optional<double> mean_delta_e = std::nullopt, sphere_psnr_db = std::nullopt;
+  // By SceneJudge; given for a budget of appearance or a verdict.
+  std::optional<double> mean_delta_e = std::nullopt, seen_psnr_db = std::nullopt;
 };
 
 // Relative rise of E, 0.01 for 1 %; 0 if E of the full fit is 0.
@@ -72,8 +70,10 @@ struct MaterialFit {
   SceneScore full, pruned;
   // Visible difference of the pruned model in the scene (Words); empty without `verdicts`.
   std::string verdict;
-  ModelFile file;          // the pruned model, with the fit information of the full one
-  int num_parameters = 0;  // stored
+  bool judged_by_reads = false;  // SceneJudge::Kind::kReads, not the sphere
+  bool misses_budget = false;    // PrunedModel::misses_budget
+  ModelFile file;                // the pruned model, with the fit information of the full one
+  int num_parameters = 0;        // stored
   std::vector<PruneDecision> decisions;
   double fit_seconds = 0, prune_seconds = 0;  // when they were made
   bool fit_from_cache = false, prune_from_cache = false;

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "io/formats/source_option.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/materials/load_model.h"
@@ -45,6 +45,8 @@ class Node {
   }
 
   bool is_string() const { return json_.type() == Type::kString; }
+  bool is_boolean() const { return json_.type() == Type::kBoolean; }
+  bool is_number() const { return json_.type() == Type::kNumber; }
   bool Has(const char* key) const { return json_.Find(key) != nullptr; }
   size_t size() const { return json_.size(); }
 
@@ -58,7 +60,7 @@ class Node {
   }
 
   // Fails unless this is an object with no keys but these.
-  const Node& CheckObject(std::initializer_list<std::string_view> known) const {
+  const Node& CheckObject(const std::vector<std::string_view>& known) const {
     CheckType(Type::kObject, "an object");
     for (size_t k = 0; k < size(); ++k) {
       const std::string key = json_.key(k);
@@ -99,6 +101,9 @@ class Node {
     }
     return value;
   }
+
+  // As it stands in the file.
+  std::string NumberText() const { return std::string(json_.number_text()); }
 
   // One of these words.
   std::string Word(const std::vector<std::string_view>& known) const {
@@ -226,6 +231,30 @@ void ReadReductions(const Node& node, SceneReductions* reductions) {
   read("samples", &reductions->samples);
 }
 
+// The text that a flag would have.
+std::string FlagText(const Node& node) {
+  if (node.is_boolean()) return node.Bool() ? "true" : "false";
+  return node.is_number() ? node.NumberText() : node.String();
+}
+
+void ReadOptions(const Node& node, std::map<std::string, std::string>* options) {
+  std::vector<std::string_view> known;
+  for (const SourceOption& option : AllSourceOptions()) known.push_back(option.name);
+  node.CheckObject(known);
+  for (const SourceOption& option : AllSourceOptions()) {
+    if (!node.Has(option.name.c_str())) continue;
+    const Node value = node[option.name.c_str()];
+    SourceOptions tried;
+    try {
+      option.set(FlagText(value), &tried);
+      CheckSourceOptions(tried);
+    } catch (const Error& error) {
+      value.Fail(error.what());
+    }
+    (*options)[option.name] = FlagText(value);
+  }
+}
+
 // What a material may have of its own, and a scene for all materials that have not.
 void ReadLimits(const Node& node, const std::string& scene_file, SceneMaterial* material) {
   if (node.Has("directions")) material->directions = ReadDirections(node["directions"], scene_file);
@@ -236,6 +265,7 @@ void ReadLimits(const Node& node, const std::string& scene_file, SceneMaterial* 
   }
   if (node.Has("budget")) material->budget = ReadBudget(node["budget"]);
   if (node.Has("leave_out")) ReadReductions(node["leave_out"], &material->reductions);
+  if (node.Has("options")) ReadOptions(node["options"], &material->options);
 }
 
 std::string LowerCase(std::string text) {
@@ -285,7 +315,7 @@ std::string ReadSource(const Node& node, const std::string& scene_file) {
 
 SceneMaterial ReadMaterial(const Node& node, const std::string& scene_file,
                            const SceneMaterial& defaults) {
-  node.CheckObject({"name", "source", "directions", "channels", "budget", "leave_out"});
+  node.CheckObject({"name", "source", "directions", "channels", "budget", "leave_out", "options"});
   SceneMaterial material = defaults;
   material.name = ReadName(node["name"]);
   material.source = ReadSource(node["source"], scene_file);
@@ -298,8 +328,8 @@ SceneMaterial ReadMaterial(const Node& node, const std::string& scene_file,
 Scene ParseScene(std::string_view text, const std::string& path) {
   const JsonValue json = JsonValue::Parse(text, NotAScene(path));
   const Node root(json, "", path);
-  root.CheckObject(
-      {"format", "version", "directions", "channels", "budget", "leave_out", "materials"});
+  root.CheckObject({"format", "version", "directions", "channels", "budget", "leave_out", "options",
+                    "materials"});
   root["format"].Word({kFormat});
   root["version"].Number(kVersion, kVersion, "the version of the format that this program reads");
   SceneMaterial defaults;
@@ -333,6 +363,14 @@ std::vector<std::string> FilesOf(const Scene& scene) {
     if (histogram != nullptr) files.push_back(histogram->source);
   }
   return files;
+}
+
+SourceOptions WithOptionsOf(const SceneMaterial& material, SourceOptions options) {
+  for (const SourceOption& option : AllSourceOptions()) {
+    const auto own = material.options.find(option.name);
+    if (own != material.options.end()) option.set(own->second, &options);
+  }
+  return options;
 }
 
 Scene ReadScene(const std::string& path) {

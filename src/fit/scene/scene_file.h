@@ -1,11 +1,14 @@
 #ifndef TRILOBE_FIT_SCENE_SCENE_FILE_H_
 #define TRILOBE_FIT_SCENE_SCENE_FILE_H_
 
+#include <map>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "fit/scene/directions.h"
+#include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
 
@@ -46,7 +49,18 @@ struct SceneMaterial {
   SceneChannels channels = SceneChannels::kRgb;
   SceneBudget budget;
   SceneReductions reductions;
+  // Options of the measurement that replace those of the command: name of a SourceOption, and text.
+  std::map<std::string, std::string> options;
+
+  // Whether single places of the measurement are read, by a list or a histogram.
+  bool reads_places() const {
+    return reductions.samples && (std::holds_alternative<DirectionList>(directions) ||
+                                  std::holds_alternative<DirectionHistogram>(directions));
+  }
 };
+
+// The options by which a material's measurement is read.
+SourceOptions WithOptionsOf(const SceneMaterial& material, SourceOptions options);
 
 // The materials of a scene, in the order of its file; at least one.
 struct Scene {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -15,8 +14,8 @@
 #include "fit/prune/thinned_objective.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "fit/scene/cached_fits.h"
-#include "fit/scene/scene_appearance.h"
-#include "model/appearance/picture_data.h"
+#include "fit/scene/scene_judge.h"
+#include "io/formats/source_option.h"
 #include "model/appearance/verdict.h"
 #include "model/lobes/gauge.h"
 #include "trilobe/core/base/error.h"
@@ -24,9 +23,6 @@
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/appearance/material.h"
-#include "trilobe/model/appearance/sampled_sphere.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/materials/load_model.h"
 
 namespace trilobe {
@@ -124,7 +120,7 @@ class MaterialFitter {
     const BrdfSamples used =
         UsedSamples(SamplesOf(measured), material_.directions, measured.anisotropic);
     const Objective objective(InChannels(used, material_.channels), models.front().spec(),
-                              FindWeighting(settings_.weighting), num_threads_);
+                              WeightingFor(measured), num_threads_);
     std::vector<SceneScore> scores;
     for (const FactorModel& model : models) {
       const FactorModel judged = grey ? LuminanceOf(model) : model;
@@ -143,19 +139,32 @@ class MaterialFitter {
       Measurement measured =
           AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
       measured.xxh128 = fingerprint_;
+      const SourceOptions given = WithOptionsOf(material_, settings_.source);
+      for (const SourceOption& option : AllSourceOptions()) {
+        if (option.name == "data_seed" || option.get(given) == option.get({})) continue;
+        measured.notes.push_back(
+            "--" + option.name +
+            " is for measurements, and this is a model; it changes nothing here");
+      }
       return measured;
     }
-    return source_.Read({.noise = settings_.noise,
-                         .seed = settings_.seed,
-                         .num_threads = num_threads_,
-                         .max_angle_deg = settings_.max_angle_deg,
-                         .min_theta_d_deg = settings_.min_theta_d_deg,
-                         .extrapolated = settings_.extrapolated});
+    SourceOptions options = WithOptionsOf(material_, settings_.source);
+    options.num_threads = num_threads_;
+    return source_.Read(options);
   }
 
   const Measurement& measured() {
     if (!measured_) measured_ = Measured();
     return *measured_;
+  }
+
+  // Few directions that a scene reads, in a highlight or beside it, tell no level: that is of the
+  // whole measurement.
+  Weighting WeightingFor(const Measurement& measured) const {
+    Weighting weighting = FindWeighting(settings_.weighting);
+    if (!material_.reads_places()) return weighting;
+    const BrdfSamples all = InChannels(SamplesOf(measured), material_.channels);
+    return ForSamples(std::move(weighting), all, num_threads_);
   }
 
   // As `trilobe fit` has them but for what the scene says.
@@ -165,7 +174,7 @@ class MaterialFitter {
     options.init = settings_.init;
     options.solver = settings_.solver;
     options.solver_options = [this](const ModelSpec& /*spec*/) { return settings_.options; };
-    options.weighting = FindWeighting(settings_.weighting);
+    options.weighting = WeightingFor(*measured_);
     options.compare = false;
     options.seed = settings_.seed;
     options.num_threads = num_threads_;
@@ -241,12 +250,12 @@ class MaterialFitter {
     return problem;
   }
 
-  // A scene that reads few directions may do without physics in the others.
-  void LimitLight(const Objective& data, const FactorModel& full, PrunedModel* pruned) const {
-    if (!reads_all_directions()) return;
-    const Objective of_pruned(data, pruned->model.spec());
+  void LimitLight(const Objective& data, const std::optional<LightLimit>& light,
+                  PrunedModel* pruned) const {
+    if (!light) return;
     FactorModel limited = pruned->model;
-    if (!LightLimit(data, full).Apply(pruned->layout, settings_.stop, &limited)) return;
+    if (!light->Apply(pruned->layout, settings_.stop, &limited)) return;
+    const Objective of_pruned(data, pruned->model.spec());
     const double E = of_pruned.Value(limited);
     pruned->decisions.push_back({.what = "G lowered",
                                  .parameters_before = pruned->num_parameters,
@@ -259,57 +268,48 @@ class MaterialFitter {
     pruned->E = E;
   }
 
-  // The search looks at a quarter of the pixels; that the budget is kept on all of them is seen
+  // The search judges quickly; that the budget is kept by all that the judge looks at is seen
   // afterwards, and the search repeated with a little less where it is not.
-  PrunedModel PruneByAppearance(const SceneAppearance& appearance, const FitProblem& problem,
-                                const FactorModel& model, PruneOptions options) const {
-    constexpr int kTries = 3;
+  PrunedModel PruneByAppearance(const SceneJudge& judge, const Objective& data,
+                                const FitProblem& problem, const FactorModel& model,
+                                const std::optional<LightLimit>& light,
+                                PruneOptions options) const {
+    constexpr int kTries = 4;
     constexpr double kMargin = 0.98;
     const SceneBudget& budget = material_.budget;
-    const auto error_of = [&](const SphereError& error) { return ErrorIn(budget.unit, error); };
+    const auto error_of = [&](const SeenError& error) { return ErrorIn(budget.unit, error); };
     const double most = MaxError(budget);
-    appearance.CheckShowsSomething();
-    const double full_error = error_of(appearance.Compare(model));
-    // What is beyond the budget on all pixels is so on a quarter of them.
-    double share = full_error > 0 ? error_of(appearance.CompareQuickly(model)) / full_error : 1;
-    for (int k = 0;; ++k) {
+    const double full_error = error_of(judge.Compare(model));
+    // An error that is beyond the budget is so to a quick look, too.
+    double share = full_error > 0 ? error_of(judge.CompareQuickly(model)) / full_error : 1;
+    for (int k = 0; k < kTries; ++k) {
       options.max_error = share * most;
       options.error = [&](const FactorModel& judged) {
-        return error_of(appearance.CompareQuickly(judged));
+        const double error = error_of(judge.CompareQuickly(judged));
+        if (!light || error > options.max_error) return error;
+        // The model will be kept from making light, which takes longer to see.
+        FactorModel limited = judged;
+        const TableLayout all = TableLayout::Full(judged.spec());
+        if (!light->Apply(all, settings_.stop, &limited)) return error;
+        return std::max(error, error_of(judge.CompareQuickly(limited)));
       };
       PrunedModel pruned = PruneWithin(problem, model, options);
-      const double error = error_of(appearance.Compare(pruned.model));
-      if (error <= most || full_error > most || settings_.stop()) return pruned;
-      if (k == kTries) break;
+      LimitLight(data, light, &pruned);
+      const double error = error_of(judge.Compare(pruned.model));
+      if (error <= most || pruned.misses_budget || settings_.stop()) return pruned;
       share *= kMargin * most / error;
     }
     options.error = nullptr;
     options.max_relative_rise = 0;
-    return PruneWithin(problem, model, options);  // what is free
+    PrunedModel pruned = PruneWithin(problem, model, options);  // what is free
+    LimitLight(data, light, &pruned);
+    return pruned;
   }
 
   AppearanceOptions Appearance() const {
     AppearanceOptions options = settings_.appearance;
     options.num_threads = num_threads_;
     return options;
-  }
-
-  // Nothing where the measurement makes no picture.
-  std::unique_ptr<SceneAppearance> AppearanceIfAny() {
-    if (PictureDataOf(measured()).empty()) return nullptr;
-    return std::make_unique<SceneAppearance>(material_, measured(), Appearance());
-  }
-
-  // On the sphere; or as samples on no grid are compared, where no pixel sees a bin, too.
-  SeenError CompareSeen(const SceneAppearance* appearance, const BrdfSamples& samples,
-                        const FactorModel& model) {
-    if (appearance != nullptr) {
-      const SphereError error = appearance->Compare(model);
-      const auto sees = [](const PlaceError& place) { return place.share > 0; };
-      if (std::ranges::any_of(error.places, sees)) return error;
-    }
-    return CompareSampledSphere(samples, EvaluateSamples(model, samples, num_threads_),
-                                MaterialOf(model).spherical, measured().anisotropic, Appearance());
   }
 
   std::optional<MaterialFit> PruneAnew() {
@@ -322,21 +322,24 @@ class MaterialFitter {
     const Objective& objective = problem.data;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
-    // No lobe more says what a model is better than it does: what its sphere is off is that of
-    // bins.
+    // The source is a model, so a further lobe cannot help; what remains is the error of bins.
     if (is_model_) prune_options.max_lobes = 0;
     const bool by_appearance = material_.budget.of_appearance();
-    std::unique_ptr<SceneAppearance> appearance;
-    if (by_appearance) {
-      appearance = std::make_unique<SceneAppearance>(material_, measured(), Appearance());
-    }
+    std::optional<SceneJudge> judge;
+    if (by_appearance || settings_.verdicts) judge.emplace(material_, measured(), Appearance());
     if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
-    PrunedModel pruned =
-        by_appearance ? PruneByAppearance(*appearance, WithGuess(Guide(problem, *full), model),
-                                          model, prune_options)
-                      : PruneWithin(WithGuess(problem, model), model, prune_options);
+    // A scene that reads few directions may do without physics in the others.
+    std::optional<LightLimit> light;
+    if (reads_all_directions()) light.emplace(objective, model);
+    PrunedModel pruned;
+    if (by_appearance) {
+      pruned = PruneByAppearance(*judge, objective, WithGuess(Guide(problem, *full), model), model,
+                                 light, prune_options);
+    } else {
+      pruned = PruneWithin(WithGuess(problem, model), model, prune_options);
+      LimitLight(objective, light, &pruned);
+    }
     if (settings_.stop()) return std::nullopt;
-    LimitLight(objective, model, &pruned);
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;
@@ -348,19 +351,18 @@ class MaterialFitter {
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
-    if (settings_.verdicts) {
-      if (!appearance) appearance = AppearanceIfAny();
-      fit.verdict =
-          Words(VerdictOf(CompareSeen(appearance.get(), of_pruned.samples(), pruned.model)));
-    }
-    if (appearance) {
-      const auto add = [&](const FactorModel& judged, SceneScore* score) {
-        const SphereError error = appearance->Compare(judged);
+    fit.misses_budget = pruned.misses_budget;
+    if (judge) {
+      fit.judged_by_reads = judge->kind() == SceneJudge::Kind::kReads;
+      const auto judge_to = [&](const FactorModel& judged, SceneScore* score) {
+        const SeenError error = judge->Compare(judged);
         score->mean_delta_e = error.mean_delta_e;
-        score->sphere_psnr_db = error.psnr_db;
+        score->seen_psnr_db = error.psnr_db;
+        return error;
       };
-      add(model, &fit.full);
-      add(pruned.model, &fit.pruned);
+      judge_to(model, &fit.full);
+      const SeenError error = judge_to(pruned.model, &fit.pruned);
+      if (settings_.verdicts) fit.verdict = Words(VerdictOf(error));
     }
     fit.file = {.model = std::move(pruned.model),
                 .unobserved = UnobservedParameters(of_pruned.coverage()),
@@ -415,6 +417,7 @@ std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSet
   SceneMaterial whole;
   whole.name = material.name;
   whole.source = material.source;
+  whole.options = material.options;
   SceneFitSettings diagnosed = settings;
   diagnosed.options.diagnose = true;
   return MaterialFitter(whole, diagnosed, num_threads)

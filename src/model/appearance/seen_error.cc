@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/math/quantile.h"
 #include "model/appearance/color.h"
@@ -29,15 +30,23 @@ double ColorShare(const Lab& measured, const Lab& fitted) {
 }
 
 // [1 / luminance] The mean clipped luminance increases with the exposure.
-double ExposureOf(const std::vector<double>& luminances) {
-  const double largest = luminances.empty() ? 0 : std::ranges::max(luminances);
+double ExposureOf(std::span<const SeenPatch> patches) {
+  std::vector<double> luminances;
+  double largest = 0, all = 0;
+  for (const SeenPatch& patch : patches) {
+    luminances.push_back(Luminance(patch.measured) * patch.cosines.i);
+    largest = std::max(largest, luminances.back());
+    all += patch.weight;
+  }
   if (!(largest > 0)) return 0;
   double below = std::log2(kMeanLuminance / largest), above = below + 64;
   for (int step = 0; step < 60; ++step) {
     const double middle = (below + above) / 2, exposure = std::exp2(middle);
     double sum = 0;
-    for (const double y : luminances) sum += std::min(exposure * y, 1.0);
-    (sum < kMeanLuminance * static_cast<double>(luminances.size()) ? below : above) = middle;
+    for (size_t k = 0; k < patches.size(); ++k) {
+      sum += patches[k].weight * std::min(exposure * luminances[k], 1.0);
+    }
+    (sum < kMeanLuminance * all ? below : above) = middle;
   }
   return std::exp2(below);
 }
@@ -62,43 +71,43 @@ const char* NameOf(SeenPlace place) {
   return "";
 }
 
-void SeenErrorSum::Add(const Rgb& measured, const Rgb& fitted, bool grazing) {
+void SeenErrorSum::Add(const Rgb& measured, const Rgb& fitted, bool grazing, double weight) {
   const Rgb a = Clipped(measured), b = Clipped(fitted);
   for (int c = 0; c < kChannels; ++c) {
     const double difference = EncodeSrgb(b[c]) - EncodeSrgb(a[c]);
-    encoded_squares_ += difference * difference;
+    encoded_squares_ += weight * difference * difference;
   }
   const Lab lab_a = ToLab(a), lab_b = ToLab(b);
   const double difference = LabDifference(lab_a, lab_b);
   delta_e_.push_back(difference);
+  weights_.push_back(weight);
   const bool bright = std::max(Luminance(measured), Luminance(fitted)) >= 2 * kMeanLuminance;
   const SeenPlace place = grazing  ? SeenPlace::kGrazing
                           : bright ? SeenPlace::kHighlights
                                    : SeenPlace::kRest;
   Sum& sum = sums_[static_cast<size_t>(place)];
-  ++sum.pixels;
-  sum.delta_e += difference;
-  sum.squares += difference * difference;
+  sum.pixels += weight;
+  sum.delta_e += weight * difference;
+  sum.squares += weight * difference * difference;
   // By the colour before clipping: clipping turns orange into yellow.
-  sum.color_squares += difference * difference * ColorShare(ToLab(measured), ToLab(fitted));
-  sum.lightness += lab_b[0] - lab_a[0];
+  sum.color_squares +=
+      weight * difference * difference * ColorShare(ToLab(measured), ToLab(fitted));
+  sum.lightness += weight * (lab_b[0] - lab_a[0]);
 }
 
 SeenError SeenErrorSum::Total() const {
-  const auto n = static_cast<double>(std::max<size_t>(delta_e_.size(), 1));
+  const double pixels = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  const double n = pixels > 0 ? pixels : 1;
   SeenError error;
   error.psnr_db = encoded_squares_ > 0 ? -10 * std::log10(encoded_squares_ / (n * kChannels))
                                        : std::numeric_limits<double>::infinity();
-  for (const double difference : delta_e_) error.mean_delta_e += difference / n;
-  if (!delta_e_.empty()) {
-    std::vector<double> differences = delta_e_;
-    error.delta_e_95 = Quantile(&differences, 0.95);
-  }
+  for (size_t k = 0; k < delta_e_.size(); ++k) error.mean_delta_e += weights_[k] * delta_e_[k] / n;
+  if (!delta_e_.empty()) error.delta_e_95 = WeightedQuantile(delta_e_, weights_, 0.95);
   double squares = 0;
   for (const Sum& sum : sums_) squares += sum.squares;
   for (size_t k = 0; k < kNumPlaces; ++k) {
     const Sum& sum = sums_[k];
-    if (sum.pixels == 0) continue;
+    if (!(sum.pixels > 0)) continue;
     error.places[k] = {.share = sum.pixels / n,
                        .squares = squares > 0 ? sum.squares / squares : 0,
                        .mean_delta_e = sum.delta_e / sum.pixels,
@@ -108,21 +117,25 @@ SeenError SeenErrorSum::Total() const {
   return error;
 }
 
-SeenError CompareSamples(const BrdfSamples& samples, const std::vector<Rgb>& fitted) {
-  CheckSize("fitted", fitted.size(), samples.rho.size());
-  std::vector<double> luminances;
-  for (int j = 0; j < samples.size(); ++j) {
-    luminances.push_back(Luminance(samples.rho[j]) * samples.CosinesOf(j).i);
-  }
-  const double exposure = ExposureOf(luminances);
+SeenError ComparePatches(std::span<const SeenPatch> patches) {
+  const double exposure = ExposureOf(patches);
   const double grazing = std::cos(DegreesToRadians(kGrazingAngleDegrees));
   SeenErrorSum sum;
-  for (int j = 0; j < samples.size(); ++j) {
-    const Cosines cosines = samples.CosinesOf(j);
-    sum.Add(Scaled(samples.rho[j], exposure * cosines.i), Scaled(fitted[j], exposure * cosines.i),
-            std::min(cosines.i, cosines.o) < grazing);
+  for (const SeenPatch& patch : patches) {
+    const double factor = exposure * patch.cosines.i;
+    sum.Add(Scaled(patch.measured, factor), Scaled(patch.fitted, factor),
+            std::min(patch.cosines.i, patch.cosines.o) < grazing, patch.weight);
   }
   return sum.Total();
+}
+
+SeenError CompareSamples(const BrdfSamples& samples, const std::vector<Rgb>& fitted) {
+  CheckSize("fitted", fitted.size(), samples.rho.size());
+  std::vector<SeenPatch> patches(fitted.size());
+  for (int j = 0; j < samples.size(); ++j) {
+    patches[j] = {.measured = samples.rho[j], .fitted = fitted[j], .cosines = samples.CosinesOf(j)};
+  }
+  return ComparePatches(patches);
 }
 
 }  // namespace trilobe

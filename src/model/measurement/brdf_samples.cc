@@ -137,7 +137,7 @@ std::span<const double> BrdfSamples::SpectrumOf(int j) const {
 
 double BrdfSamples::SolidAngle(int j) const {
   CheckIndex(j, size(), "the sample");
-  if (!on_grid()) return 1;
+  if (!on_grid() || counted) return 1;
   const int row = bins[j] / grid.phi_d;
   return grid.SolidAngle(row / grid.theta_d, row % grid.theta_d);
 }
@@ -171,6 +171,7 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
 
 BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers) {
   BrdfSamples selected{samples.source, samples.grid, {}, {}, {}};
+  selected.counted = samples.counted;
   CheckSizes(samples);
   const auto reserve = [&](const auto& all, auto* chosen) {
     if (!all.empty()) chosen->reserve(numbers.size());
@@ -289,6 +290,7 @@ BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride) {
     counts[mean] += count;
   }
   BrdfSamples means{samples.source, grid, {}, {}, {}};
+  means.counted = samples.counted;
   const std::vector<bool> above = BinsAboveSurface(grid);
   for (int bin = 0; bin < grid.size(); ++bin) {
     if (!above[bin] || !(counts[bin] > 0)) continue;

@@ -74,7 +74,7 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     int n = folded.row_begin[h * grid.theta_d];
     for (int d = 0; d < grid.theta_d; ++d) {
-      const double solid_angle = grid.SolidAngle(h, d);
+      const double solid_angle = samples.counted ? 1 : grid.SolidAngle(h, d);
       for (int p = 0; p < half; ++p) {
         const Pair pair = lookup.At(h, d, p);
         if (pair.empty()) continue;

@@ -294,8 +294,12 @@ TEST(Prune, AddsALobeWhereTheBudgetAsksForALowerE) {
   ExpectConsistent(fit, more);
   const PrunedModel none = Prune(fit.objective, fit.model, {.max_relative_rise = -0.3});
   EXPECT_EQ(none.model.spec().lobes, 1);
+  EXPECT_FALSE(more.misses_budget);
+  EXPECT_TRUE(none.misses_budget);
   ASSERT_FALSE(none.decisions.empty());
-  EXPECT_FALSE(none.decisions.back().taken);
+  EXPECT_FALSE(none.decisions.front().taken);
+  EXPECT_LE(none.E, 1.1 * E);
+  EXPECT_LT(none.num_parameters, fit.model.spec().num_parameters());
 }
 
 TEST(Prune, TheSameBitsForAnyNumberOfThreads) {

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {
@@ -50,26 +52,36 @@ struct WholeSphere {
 // Accumulates SeenError pixel by pixel.
 class SeenErrorSum {
  public:
-  // Takes exposed light, which is clipped at 1 and encoded by the sRGB curve.
-  void Add(const Rgb& measured, const Rgb& fitted, bool grazing);
+  // Takes exposed light, which is clipped at 1 and encoded by the sRGB curve. `weight`: how many
+  // pixels show it, above 0.
+  void Add(const Rgb& measured, const Rgb& fitted, bool grazing, double weight = 1);
 
   SeenError Total() const;
 
  private:
   struct Sum {
-    int pixels = 0;
+    double pixels = 0;
     double delta_e = 0, squares = 0, color_squares = 0, lightness = 0;
   };
 
   double encoded_squares_ = 0;
-  std::vector<double> delta_e_;
+  std::vector<double> delta_e_, weights_;
   std::array<Sum, kNumPlaces> sums_ = {};
 };
 
-// The visible difference of samples that form no image: each is a patch of brightness rho cos
-// theta_i. The exposure makes the mean clipped luminance of the measured samples kMeanLuminance; if
-// too few of them are not black, these are exposed to nearly 1. 0 for a black measurement.
-// `fitted`: [samples.size()]
+// A uniform patch of the picture that a renderer would make, of brightness rho cos theta_i.
+struct SeenPatch {
+  Rgb measured{}, fitted{};  // rho [1/sr]
+  Cosines cosines;
+  double weight = 1;  // how many pixels show it, above 0
+};
+
+// The visible difference of what forms no image. The exposure makes the mean clipped luminance of
+// the measured patches kMeanLuminance; if too few of them are not black, these are exposed to
+// nearly 1. 0 for a black measurement.
+SeenError ComparePatches(std::span<const SeenPatch> patches);
+
+// The same for samples, each of them a patch of weight 1. `fitted`: [samples.size()]
 SeenError CompareSamples(const BrdfSamples& samples, const std::vector<Rgb>& fitted);
 
 }  // namespace trilobe

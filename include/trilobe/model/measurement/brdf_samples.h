@@ -33,6 +33,9 @@ struct BrdfSamples {
   std::vector<Rgb> rho;                // [n], BRDF [1/sr], finite and >= 0
   // [n], or empty if all are 1: how often a sample counts, a factor of its weight; finite and >= 0.
   std::vector<double> multiplicity = {};
+  // Multiplicities say how often directions occur, as a renderer counts them, in the place of the
+  // measure that they have: SolidAngle is 1.
+  bool counted = false;
   // [n], or empty: directions of scattered samples, with the order of wi and wo and the azimuths,
   // which `angles` lack and anisotropic models need.
   std::vector<SphericalAngles> directions = {};
@@ -62,7 +65,8 @@ struct BrdfSamples {
   void SetSpectra(Spectra new_spectra);
   // [spectra->bands()]. Throws Error if there are none.
   std::span<const double> SpectrumOf(int j) const;
-  // The measure of the sample's direction pairs, up to a constant factor; 1 if scattered.
+  // The measure of the sample's direction pairs, up to a constant factor; 1 if scattered or
+  // counted.
   double SolidAngle(int j) const;
 };
 

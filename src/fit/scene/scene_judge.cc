@@ -1,14 +1,18 @@
-#include "fit/scene/scene_appearance.h"
+#include "fit/scene/scene_judge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "fit/scene/directions.h"
 #include "model/appearance/color.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/appearance/material.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
+#include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe {
 namespace {
@@ -48,10 +52,19 @@ Measurement LimitToScene(const SceneMaterial& material, Measurement measured) {
   return measured;
 }
 
-SphereError CompareAtNodes(const NodeBrdf& nodes, const FactorModel& model,
-                           const AppearanceOptions& options) {
-  const ImagePair pair = RenderMeasuredPair(nodes, MaterialOf(model).spherical, options);
-  return CompareSpheres(pair.measured, pair.fitted);
+// The samples in the scene's channels.
+BrdfSamples SamplesInChannels(const SceneMaterial& material, const Measurement& measured) {
+  BrdfSamples samples = SamplesOf(measured);
+  const bool grey = material.channels == SceneChannels::kLuminance;
+  return grey ? LuminanceOf(std::move(samples)) : samples;
+}
+
+// The samples of a measurement that LimitToScene has limited.
+BrdfSamples SamplesOfSeen(const SceneMaterial& material, const Measurement& seen) {
+  if (!seen.table) return seen.samples;
+  BrdfSamples samples = SamplesOf(seen);
+  if (!material.reductions.samples) return samples;
+  return UsedSamples(samples, material.directions, seen.anisotropic);
 }
 
 }  // namespace
@@ -86,48 +99,58 @@ FactorModel LuminanceOf(const FactorModel& model) {
   return grey;
 }
 
-SceneAppearance::SceneAppearance(const SceneMaterial& material, Measurement measured,
-                                 const AppearanceOptions& options)
+SceneJudge::SceneJudge(const SceneMaterial& material, Measurement measured,
+                       const AppearanceOptions& options)
     : grid_(GridOf(measured)),
+      all_(SamplesInChannels(material, measured)),
       seen_(LimitToScene(material, std::move(measured))),
+      samples_(SamplesOfSeen(material, seen_)),
       pictured_(PictureDataOf(seen_, grid_)),
       options_(options) {
-  if (pictured_.empty()) {
-    throw Error(seen_.source +
-                ": samples on no grid make no picture to compare with; give a budget in "
-                "relative_rise, psnr_drop_db, bytes or seconds");
+  const bool by_places = material.reads_places();
+  if (!by_places && pictured_.table != nullptr) quick_.emplace(*pictured_.table, options_);
+  if (by_places || !SphereShowsSomething()) {
+    reads_.emplace(all_, samples_, material.directions);
   }
-  if (pictured_.table != nullptr) judge_.emplace(*pictured_.table, options_);
+  all_ = {};
 }
 
-void SceneAppearance::CheckShowsSomething() const {
-  // One of black and grey differs from anything that is seen.
-  const auto differs_from = [this](double diffuse) {
+// One of black and grey differs from anything that is seen.
+bool SceneJudge::SphereShowsSomething() const {
+  return std::ranges::any_of(std::array{0.0, 0.1}, [this](double diffuse) {
     FactorModel model(ModelSpec::SharedFactors(0));
     std::ranges::fill(model.d(), diffuse);
     // What some of the pixels show, all of them do.
     return CompareQuickly(model).mean_delta_e > 0 || Compare(model).mean_delta_e > 0;
-  };
-  if (differs_from(0) || differs_from(0.1)) return;
-  throw Error(seen_.source +
-              ": no pixel of the sphere shows a direction that the scene uses; give a budget in "
-              "relative_rise, psnr_drop_db, bytes or seconds");
+  });
 }
 
-SphereError SceneAppearance::Compare(const FactorModel& model) const {
-  if (pictured_.table == nullptr) return CompareAtNodes(*pictured_.nodes, model, options_);
-  const ImagePair pair = RenderMeasuredPair(*pictured_.table, MaterialOf(model).angular, options_);
+SeenError SceneJudge::CompareSampled(const FactorModel& model) const {
+  return CompareSampledSphere(samples_, EvaluateSamples(model, samples_, options_.num_threads),
+                              MaterialOf(model).spherical, seen_.anisotropic, options_);
+}
+
+SeenError SceneJudge::Compare(const FactorModel& model) const {
+  if (reads_) return reads_->Compare(model, options_.num_threads);
+  if (pictured_.empty()) return CompareSampled(model);
+  const ImagePair pair =
+      pictured_.table != nullptr
+          ? RenderMeasuredPair(*pictured_.table, MaterialOf(model).angular, options_)
+          : RenderMeasuredPair(*pictured_.nodes, MaterialOf(model).spherical, options_);
   return CompareSpheres(pair.measured, pair.fitted);
 }
 
-SphereError SceneAppearance::CompareQuickly(const FactorModel& model) const {
-  if (judge_) return (*judge_)(MaterialOf(model).angular);
+SeenError SceneJudge::CompareQuickly(const FactorModel& model) const {
+  if (reads_) return reads_->Compare(model, options_.num_threads);
+  if (pictured_.empty()) return CompareSampled(model);
+  if (quick_) return (*quick_)(MaterialOf(model).angular);
   AppearanceOptions smaller = options_;
   smaller.size /= 2;
-  return CompareAtNodes(*pictured_.nodes, model, smaller);
+  const ImagePair pair = RenderMeasuredPair(*pictured_.nodes, MaterialOf(model).spherical, smaller);
+  return CompareSpheres(pair.measured, pair.fitted);
 }
 
-double ErrorIn(SceneBudget::Unit unit, const SphereError& error) {
+double ErrorIn(SceneBudget::Unit unit, const SeenError& error) {
   return unit == SceneBudget::Unit::kMeanDeltaE ? error.mean_delta_e : ErrorByPsnr(error.psnr_db);
 }
 

@@ -1,4 +1,4 @@
-#include "fit/scene/scene_appearance.h"
+#include "fit/scene/scene_judge.h"
 
 #include <gtest/gtest.h>
 
