@@ -102,7 +102,7 @@ int RunFitOfScene(std::span<const std::string> arguments) {
        {"init",  "model",   "stretch",        "d_nodes",        "f_bins",     "g_nodes",
         "nodes", "prior",   "max_parameters", "robust",         "smoothness", "match_reflectance",
         "raw",   "probe",   "convergence",    "reconstruction", "plots",      "diagnose",
-        "shard", "verbose", "spectral"}) {
+        "shard", "verbose", "spectral",       "held_out"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

@@ -118,6 +118,8 @@ std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
   if (FLAGS_verbose) throw Error("--verbose is for the fit of one SOURCE; leave it out");
+  const int threads = ThreadsFromFlags();
+  settings.side_by_side = threads;
   settings.pair = true;
   settings.key += "pair\n";
   const std::vector<FitOutcome> all = ListSources(arguments);
@@ -135,7 +137,8 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
 
   const InterruptGuard guard;
   MakeJobs(
-      outcomes.size(), "measurements", [&](size_t k) -> FitOutcome& { return outcomes[k]; },
+      outcomes.size(), threads, "measurements",
+      [&](size_t k) -> FitOutcome& { return outcomes[k]; },
       [&](size_t k) { FitOrKeep(settings, &folders[k], &outcomes[k]); },
       [&](size_t k, size_t done) {
         PrintOutcome(outcomes[k], done, outcomes.size());

@@ -272,6 +272,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   FitReport report;
   report.noise = settings.source.noise;
   report.seed = static_cast<int64_t>(settings.fit.seed);
+  report.processor = ProcessorName();
+  report.side_by_side = settings.side_by_side;
   report.data_seed = static_cast<int64_t>(settings.source.seed);
   Stopwatch stopwatch;
   SourceOptions source_options = settings.source;

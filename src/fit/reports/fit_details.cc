@@ -166,6 +166,14 @@ Json ToJson(const Diagnosis& diagnosis) {
           {"condition", diagnosis.condition}};
 }
 
+Json ToJson(const HeldOutError& held_out) {
+  return {{"samples", held_out.samples},
+          {"objective", held_out.objective},
+          {"relative_objective", held_out.relative_objective},
+          {"psnr_db", held_out.psnr_db},
+          {"mean_delta_e", held_out.mean_delta_e}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json ToJson(const FitReport& report) {
@@ -229,6 +237,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
                                         {"beyond_samples", report.reach->beyond}}
                                  : Json()},
           {"light", ToJson(report.light)},
+          {"held_out", report.held_out ? ToJson(*report.held_out) : Json()},
           {"spectral", report.bands ? ToJson(*report.bands, report.bands_seen) : Json()},
           {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
           {"seconds",
@@ -240,9 +249,11 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
             {"finish", seconds.finish},
             {"bands", seconds.bands},
             {"score", seconds.score},
+            {"held_out", seconds.held_out},
             {"draw", seconds.draw}}},
           {"phases", ToJson(summary.phases)},
           {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
+          {"machine", {{"processor", report.processor}, {"side_by_side", report.side_by_side}}},
           {"program", fit.program},
           {"date", fit.date},
           {"key", report.key},

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
-#include <string_view>
 #include <vector>
 
 #include "core/base/text.h"
+#include "fit/study/curves.h"
 #include "io/pictures/gnuplot.h"
 
 namespace trilobe {
@@ -16,21 +15,9 @@ namespace {
 
 using Drawing = StudyFigure::Drawing;
 
-constexpr int kWidth = 760, kHeight = 460;
 constexpr double kFloor = 1e-5;  // smaller excesses are drawn here: the lowest E
 
-std::string ColorOf(size_t method) {
-  constexpr std::string_view kColors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                          "#E69F00", "#56B4E9", "#7D7D7D", "#8C6D31"};
-  return "'" + std::string(kColors[method % std::size(kColors)]) + "'";
-}
-
 double Drawn(double excess) { return std::max(excess, kFloor); }
-
-// Of the curves of a method: more than eight have the same colours, dashed.
-std::string StyleOf(size_t method) {
-  return "linecolor " + ColorOf(method) + " dashtype " + std::to_string(1 + method / 8);
-}
 
 // An axis of excesses over the lowest E, up to the largest one.
 std::string ExcessAxis(double largest) {
@@ -46,23 +33,6 @@ std::string ExcessAxis(double largest) {
          GnuplotNumber(1.6 * top) + "]\nset ytics (" + tics +
          ")\nset ylabel 'E above the lowest'\n";
 }
-
-// Blocks of data, and the plot that shows them.
-struct Curves {
-  std::string data, plot;
-
-  // `style`: what follows `using 1:2`.
-  void Add(const std::vector<std::vector<double>>& rows, const std::string& style,
-           const std::string& title) {
-    const std::string name = "curve" + std::to_string(count_++);
-    data += GnuplotData(name, rows);
-    plot += (plot.empty() ? "plot " : ", ") + ("$" + name) + " using 1:2 " + style + " " +
-            (title.empty() ? "notitle" : "title " + GnuplotQuote(title) + " noenhanced");
-  }
-
- private:
-  int count_ = 0;
-};
 
 // A curve for each run, in the colour of its method, which the first one names.
 template <typename Rows>
@@ -90,8 +60,6 @@ double LargestExcess(std::span<const StudyRun> runs) {
   return largest;
 }
 
-constexpr const char* kKey = "set key outside center top horizontal\n";
-
 // The lowest E so far, over seconds.
 Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
   std::vector<double> seconds;
@@ -106,11 +74,11 @@ Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
     for (const std::vector<double>& row : rows) seconds.push_back(row[0]);
     return rows;
   });
-  if (curves.plot.empty()) return {};
+  if (curves.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + kKey + ExcessAxis(LargestExcess(runs)) + "set logscale x\nset xrange " +
+          curves.data() + kKey + ExcessAxis(LargestExcess(runs)) + "set logscale x\nset xrange " +
               GnuplotLogRange(seconds, 3.5) + "\n" + LogTics(LogRange(seconds, 3.5), 'x') +
-              "set xlabel 'seconds'\n" + curves.plot + "\n"};
+              "set xlabel 'seconds'\n" + curves.plot() + "\n"};
 }
 
 // E of each iteration.
@@ -125,11 +93,11 @@ Drawing Convergence(std::span<const StudyRun> runs) {
     }
     return rows;
   });
-  if (curves.plot.empty()) return {};
+  if (curves.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + kKey + ExcessAxis(LargestExcess(runs)) +
+          curves.data() + kKey + ExcessAxis(LargestExcess(runs)) +
               "set xrange [0:" + std::to_string(most) +
-              "]\nset xlabel 'iteration (for AWLS, sweep)'\n" + curves.plot + "\n"};
+              "]\nset xlabel 'iteration (for AWLS, sweep)'\n" + curves.plot() + "\n"};
 }
 
 // Text as gnuplot's label of a tic, which is a format.
@@ -163,12 +131,12 @@ Drawing FinalErrors(std::span<const StudyRun> runs) {
     if (rows.empty()) continue;
     curves.Add(rows, "with points pointtype 7 pointsize 0.9 linecolor " + ColorOf(k), "");
   }
-  if (curves.plot.empty()) return {};
+  if (curves.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + ExcessAxis(largest) +
+          curves.data() + ExcessAxis(largest) +
               "set xrange [-0.5:" + GnuplotNumber(static_cast<double>(methods.size()) - 0.5) +
               "]\nset grid noxtics\nset xtics noenhanced " + (long_names ? "rotate by -20 " : "") +
-              "(" + tics + ")\n" + curves.plot + "\n"};
+              "(" + tics + ")\n" + curves.plot() + "\n"};
 }
 
 // D of a lobe over the root of theta_h in degrees, of an anisotropic one the mean over phi_h.
@@ -195,9 +163,9 @@ std::string LobePanel(const StudyRun& lowest, const std::vector<const StudyRun*>
     if (!rows.empty()) curves.Add(rows, "with lines linewidth 2 " + StyleOf(method), "");
   }
   const std::vector<std::vector<double>> of_lowest = DistributionOf(lowest.file, lobe);
-  if (curves.plot.empty() || of_lowest.empty()) return "set multiplot next\n";
+  if (curves.empty() || of_lowest.empty()) return "set multiplot next\n";
   curves.Add(of_lowest, "with lines linewidth 1.5 dashtype 2 linecolor '#000000'", "");
-  return "set title " + title + " noenhanced\n" + curves.data + curves.plot + "\n";
+  return "set title " + title + " noenhanced\n" + curves.data() + curves.plot() + "\n";
 }
 
 // The axis of D of a lobe, for all runs.
