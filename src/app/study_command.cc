@@ -64,8 +64,9 @@ void ReadRun(const ResultFolder& folder, StudyRun* run) {
     run->optimality = NumberOr(report.at("diagnosis").at("optimality"));
   }
   run->relative_E = NumberOr(report.at("relative_objective"));
-  const double E = report.at("objective"), irreducible = report.at("irreducible_objective");
-  if (run->relative_E && E > 0) run->floor = irreducible / E * *run->relative_E;
+  if (const Json& repeats = report.at("repeats"); !repeats.is_null()) {
+    run->noise_E = NumberOr(repeats.at("relative_objective"));
+  }
   const Json& verdict = report.at("verdict");
   run->of_sphere = verdict.at("of") == "sphere";
   run->psnr_db = NumberOr(verdict.at("psnr_db"));
@@ -228,6 +229,7 @@ void PrintStudy(const std::vector<StudyRun>& runs) {
                          [&](const MethodSummary& of) { return of.problem == problem; });
     std::cout << "\n" << Printable(problem) << "\n" << MethodsText(own);
   }
+  if (problems.size() > 1) std::cout << "\n" << TimesTextOf(runs);
   std::cout << "\n";
   for (const std::string& sentence : VerdictOn(runs)) std::cout << Printable(sentence) << "\n";
 }

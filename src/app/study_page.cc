@@ -138,6 +138,45 @@ std::string MethodsTable(std::span<const Column> all, std::span<const MethodSumm
   return html + "</tbody></table></div>\n";
 }
 
+// Of each method on each problem, the seconds until its median run is within 1 % of the lowest E,
+// and their geometric mean. Rows of cells; first the titles.
+std::vector<std::vector<std::string>> TimesRows(std::span<const StudyRun> runs) {
+  const std::vector<MethodSummary> summaries = SummariesOf(runs);
+  const std::vector<std::string> problems = ProblemsOf(runs);
+  std::vector<std::vector<std::string>> rows = {{"seconds to 1 %"}};
+  for (const std::string& problem : problems) rows[0].push_back(Printable(problem));
+  rows[0].emplace_back("geometric mean");
+  for (const std::string& method : MethodsOf(runs)) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row.push_back(Printable(method));
+    for (const std::string& problem : problems) {
+      const auto own = std::ranges::find_if(summaries, [&](const MethodSummary& of) {
+        return of.problem == problem && of.method == method;
+      });
+      row.push_back(own == summaries.end() ? "" : SecondsText(own->seconds_to_as_good, *own));
+    }
+    const Times times = TimesOf(summaries, method);
+    std::string mean = times.reached > 0 ? Text(times.geometric_mean, 2) + " s" : "";
+    if (times.reached > 0 && times.reached < times.of) {
+      mean += " on " + std::to_string(times.reached) + " of " + std::to_string(times.of);
+    }
+    row.push_back(mean);
+  }
+  return rows;
+}
+
+std::string HtmlOf(const std::vector<std::vector<std::string>>& rows) {
+  std::string html = "<div class=\"scroll\"><table><thead><tr>";
+  for (const std::string& title : rows[0]) html += "<th>" + EscapedMarkup(title) + "</th>";
+  html += "</tr></thead><tbody>\n";
+  for (size_t k = 1; k < rows.size(); ++k) {
+    html += "<tr><th scope=\"row\">" + EscapedMarkup(rows[k][0]) + "</th>";
+    for (size_t c = 1; c < rows[k].size(); ++c) html += Cell(rows[k][c]);
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
 std::string Definitions(const std::vector<std::pair<std::string, std::string>>& terms) {
   std::string html = "<dl>\n";
   for (const auto& [term, meaning] : terms) {
@@ -224,15 +263,8 @@ std::string ProblemText(const std::vector<StudyRun>& runs) {
          " parameters";
 }
 
-std::string TableText(std::span<const Column> all, std::span<const MethodSummary> summaries) {
-  const std::vector<Column> columns = Told(all, summaries);
-  std::vector<std::vector<std::string>> rows = {{"method"}};
-  for (const Column& column : columns) rows[0].emplace_back(column.title);
-  for (const MethodSummary& of : summaries) {
-    std::vector<std::string>& row = rows.emplace_back();
-    row.push_back(Printable(of.method));
-    for (const Column& column : columns) row.push_back(column.text(of));
-  }
+// Columns side by side, the first one to the left.
+std::string Aligned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<size_t> widths(rows[0].size());
   for (const std::vector<std::string>& row : rows) {
     for (size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], LettersIn(row[k]));
@@ -248,11 +280,25 @@ std::string TableText(std::span<const Column> all, std::span<const MethodSummary
   return text;
 }
 
+std::string TableText(std::span<const Column> all, std::span<const MethodSummary> summaries) {
+  const std::vector<Column> columns = Told(all, summaries);
+  std::vector<std::vector<std::string>> rows = {{"method"}};
+  for (const Column& column : columns) rows[0].emplace_back(column.title);
+  for (const MethodSummary& of : summaries) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row.push_back(Printable(of.method));
+    for (const Column& column : columns) row.push_back(column.text(of));
+  }
+  return Aligned(rows);
+}
+
 }  // namespace
 
 std::string MethodsText(std::span<const MethodSummary> summaries) {
   return TableText(kSearch, summaries) + "\n" + TableText(kFound, summaries);
 }
+
+std::string TimesTextOf(std::span<const StudyRun> runs) { return Aligned(TimesRows(runs)); }
 
 std::string StudyPage(std::span<const StudyRun> runs, const StudyPageContents& contents) {
   const std::vector<std::string> problems = ProblemsOf(runs), methods = MethodsOf(runs);
@@ -266,8 +312,9 @@ std::string StudyPage(std::span<const StudyRun> runs, const StudyPageContents& c
                      ". E is what the solvers minimise; the first start is the given one, the "
                      "others are random.</p>\n" +
                      Paragraph(VerdictOn(runs));
-  if (!contents.profiles.empty()) {
-    body += "<section><h2>All problems</h2>\n" + FiguresOf("", contents.profiles) + "</section>\n";
+  if (problems.size() > 1) {
+    body += "<section><h2>All problems</h2>\n" + HtmlOf(TimesRows(runs)) +
+            FiguresOf("", contents.profiles) + "</section>\n";
   }
   for (const std::string& problem : problems) {
     const std::vector<StudyRun> own = RunsOn(problem, runs);

@@ -371,6 +371,7 @@ class Fitting {
     if (!measurement_.table) {
       fit->reach = ReachOf(fit->objective.samples(), fit->model(), options_.num_threads);
     }
+    fit->repeats = NoiseOfRepeats(fit->objective);
     fit->measured_share = MeasuredShare(fit->objective.samples());
     if (measurement_.table && fit->appearance) {
       fit->whole = EstimateWholeSphere(fit->objective, fit->model(), fit->measured_share,

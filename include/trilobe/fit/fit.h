@@ -17,6 +17,7 @@
 #include "trilobe/model/lobes/lobe_light.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/objective/objective.h"
+#include "trilobe/model/objective/repeat_noise.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/solver.h"
 
@@ -68,6 +69,7 @@ struct FitResult {
   // (EstimateWholeSphere, EstimateWholeOfSamples).
   std::optional<WholeSphere> whole = {};
   LobeLight light = {};
+  std::optional<RepeatNoise> repeats = {};
   std::optional<HeldOutError> held_out = {};  // unless the samples are too few
   std::optional<BandsFit> bands = {};         // FitOptions::bands, unless stopped before
   std::optional<SeenError> bands_seen = {};   // their colours, as `appearance` or samples_seen

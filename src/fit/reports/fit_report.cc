@@ -100,6 +100,7 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->bands = fit.bands;
   report->bands_seen = fit.bands_seen;
   report->ripple = fit.ripple;
+  report->repeats = fit.repeats;
   report->held_out = fit.held_out;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
 }

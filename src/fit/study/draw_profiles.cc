@@ -26,16 +26,15 @@ std::vector<std::vector<double>> StepsOf(const Profile& profile, double last) {
 }
 
 Drawing Draw(const std::vector<Profile>& profiles, const std::string& x_label) {
-  constexpr size_t kMostBands = 3;  // more hide each other
+  constexpr size_t kMostBands = 4;  // more hide each other
   double first = profiles.front().points.front().x, last = first;
   for (const Profile& profile : profiles) last = std::max(last, profile.points.back().x);
   last = std::max(1.2 * last, 2 * first);
   Curves curves;
   for (size_t k = 0; k < profiles.size() && profiles.size() <= kMostBands; ++k) {
-    curves.Add(
-        StepsOf(profiles[k], last),
-        "with filledcurves fillstyle transparent solid 0.12 noborder linecolor " + ColorOf(k), "",
-        "1:3:4");
+    curves.Add(StepsOf(profiles[k], last),
+               "with filledcurves fillstyle transparent solid 0.1 noborder linecolor " + ColorOf(k),
+               "", "1:3:4");
   }
   for (size_t k = 0; k < profiles.size(); ++k) {
     curves.Add(StepsOf(profiles[k], last), "with lines linewidth 2.5 " + StyleOf(k),
@@ -67,11 +66,12 @@ constexpr StudyFigure kProfiles[] = {
     {"performance_profile",
      "Performance profiles: the share of runs that come within 1 % of the lowest E of their "
      "problem "
-     "in at most x times the time of the fastest method from the same start. Bands: 95 % (Wilson).",
+     "in at most x times the time of the fastest method from the same start. Bands, of up to four "
+     "methods: 95 % intervals.",
      Performance},
     {"data_profile",
      "Data profiles: the share of runs that come within 1 % of the lowest E of their problem in x "
-     "seconds. Bands: 95 % (Wilson).",
+     "seconds. Bands, of up to four methods: 95 % intervals.",
      Data}};
 
 }  // namespace

@@ -60,15 +60,34 @@ double LargestExcess(std::span<const StudyRun> runs) {
   return largest;
 }
 
+// Whether a picture shows a record besides those before it: of thousands, each some 1 % later.
+class Thinned {
+ public:
+  bool Takes(double x, bool is_last) {
+    if (count_++ >= kAll && x < 1.01 * last_ && !is_last) return false;
+    last_ = x;
+    return true;
+  }
+
+ private:
+  static constexpr int kAll = 200;
+  int count_ = 0;
+  double last_ = 0;
+};
+
 // The lowest E so far, over seconds.
 Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
   std::vector<double> seconds;
   const Curves curves = CurvesOf(runs, "with steps linewidth 2", [&](const StudyRun& run) {
     std::vector<std::vector<double>> rows;
     double lowest = std::numeric_limits<double>::infinity();
+    Thinned thinned;
     for (const IterationRecord& record : run.trace) {
       lowest = std::min(lowest, run.ExcessOf(record.minimised()));
-      if (record.seconds > 0) rows.push_back({record.seconds, Drawn(lowest)});
+      const bool is_last = &record == &run.trace.back();
+      if (record.seconds > 0 && thinned.Takes(record.seconds, is_last)) {
+        rows.push_back({record.seconds, Drawn(lowest)});
+      }
     }
     if (rows.empty()) rows.push_back({1e-3, Drawn(lowest)});
     for (const std::vector<double>& row : rows) seconds.push_back(row[0]);
@@ -81,23 +100,44 @@ Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
               "set xlabel 'seconds'\n" + curves.plot() + "\n"};
 }
 
+// The axis of iterations. Sweeps are so many more than joint steps that these would be next to the
+// axis but for a logarithmic one, on which the start is at 1/2.
+constexpr double kStart = 0.5;
+std::string IterationAxis(int most, bool logarithmic) {
+  const std::string to = ":" + std::to_string(most) + "]\n";
+  if (!logarithmic) return "set xrange [0" + to;
+  std::string tics = "'start' " + GnuplotNumber(kStart);
+  for (int tic = 1; tic <= most && tic <= 100000000; tic *= 10) {
+    tics += ", '" + std::to_string(tic) + "' " + std::to_string(tic);
+  }
+  return "set logscale x\nset xrange [" + GnuplotNumber(kStart) + to + "set xtics (" + tics + ")\n";
+}
+
 // E of each iteration.
 Drawing Convergence(std::span<const StudyRun> runs) {
-  int most = 1;
+  constexpr int kManyTimes = 10;
+  int most = 1, fewest = std::numeric_limits<int>::max();
+  for (const StudyRun& run : runs) {
+    if (run.failed()) continue;
+    most = std::max(most, run.iterations());
+    fewest = std::min(fewest, run.iterations());
+  }
+  const bool logarithmic = most > kManyTimes * std::max(fewest, 1);
   const Curves curves = CurvesOf(runs, "with lines linewidth 2", [&](const StudyRun& run) {
     std::vector<std::vector<double>> rows;
+    Thinned thinned;
     for (const IterationRecord& record : run.trace) {
-      rows.push_back(
-          {static_cast<double>(record.iteration), Drawn(run.ExcessOf(record.minimised()))});
-      most = std::max(most, record.iteration);
+      if (!thinned.Takes(record.iteration, &record == &run.trace.back())) continue;
+      const double x = logarithmic ? std::max<double>(record.iteration, kStart) : record.iteration;
+      rows.push_back({x, Drawn(run.ExcessOf(record.minimised()))});
     }
     return rows;
   });
   if (curves.empty()) return {};
   return {kWidth, kHeight,
           curves.data() + kKey + ExcessAxis(LargestExcess(runs)) +
-              "set xrange [0:" + std::to_string(most) +
-              "]\nset xlabel 'iteration (for AWLS, sweep)'\n" + curves.plot() + "\n"};
+              IterationAxis(most, logarithmic) + "set xlabel 'iteration (for AWLS, sweep)'\n" +
+              curves.plot() + "\n"};
 }
 
 // Text as gnuplot's label of a tic, which is a format.

@@ -217,6 +217,24 @@ std::vector<std::string> MethodsOf(std::span<const StudyRun> runs) {
   return NamesOf(runs, &StudyRun::method);
 }
 
+Times TimesOf(std::span<const MethodSummary> summaries, const std::string& method) {
+  constexpr double kLeast = 1e-6;
+  Times times;
+  double logarithms = 0;
+  for (const MethodSummary& of : summaries) {
+    if (of.method != method) continue;
+    ++times.of;
+    if (std::isfinite(of.seconds_to_as_good)) {
+      ++times.reached;
+      logarithms += std::log(std::max(of.seconds_to_as_good, kLeast));
+    } else {
+      times.short_of_limit = times.short_of_limit || of.short_of_limit;
+    }
+  }
+  if (times.reached > 0) times.geometric_mean = std::exp(logarithms / times.reached);
+  return times;
+}
+
 std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs) {
   std::vector<MethodSummary> summaries;
   for (const std::string& problem : ProblemsOf(runs)) {

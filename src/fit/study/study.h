@@ -31,9 +31,9 @@ struct StudyRun {
   std::string weighting = {};
   // The scaled gradient where it stopped (Diagnosis::optimality), if it was computed.
   std::optional<double> optimality = {};
-  // E of the data over a black model's, and the part of it that no model changes: what samples of
-  // the same directions differ by (Objective::IrreducibleEnergy).
-  std::optional<double> relative_E = {}, floor = {};
+  // E of the data over a black model's, and what noise alone leaves of it, as far as samples repeat
+  // (RepeatNoise).
+  std::optional<double> relative_E = {}, noise_E = {};
   // Beside the measurement: of the sphere or, where the samples form none, of the samples.
   std::optional<double> psnr_db = {}, mean_delta_e = {};
   bool of_sphere = true;
@@ -129,6 +129,14 @@ struct MethodSummary {
 
 // One for each problem and method, in the order of their first runs.
 std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs);
+
+// What the median runs of a method take until E is within kAsGood of the lowest, over problems.
+struct Times {
+  int reached = 0, of = 0;      // problems
+  double geometric_mean = 0;    // of those reached [s]
+  bool short_of_limit = false;  // on one that was not
+};
+Times TimesOf(std::span<const MethodSummary> summaries, const std::string& method);
 
 // The names of problems and methods, in the order of their first runs.
 std::vector<std::string> ProblemsOf(std::span<const StudyRun> runs);

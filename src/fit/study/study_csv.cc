@@ -8,7 +8,7 @@
 namespace trilobe {
 std::string RunsCsv(std::span<const StudyRun> runs) {
   Csv csv(
-      "problem,method,start,objective,excess,relative_objective,irreducible,iterations,seconds,"
+      "problem,method,start,objective,excess,relative_objective,noise_objective,iterations,seconds,"
       "seconds_to_1_percent,stop_reason,optimality,raised,largest_rise,lobe_agreement,psnr_db,"
       "mean_delta_e,held_out_relative_objective,held_out_mean_delta_e,samples,parameters,folder,"
       "error");
@@ -16,7 +16,7 @@ std::string RunsCsv(std::span<const StudyRun> runs) {
     const auto counted = [&](int n) { return run.failed() ? std::string() : std::to_string(n); };
     const SolverSummary::Raises raises = SolverSummary::FindRaises(run.trace);
     csv.Add(run.problem).Add(run.method).Add(run.start);
-    csv.Add(run.objective()).Add(run.excess()).Add(run.relative_E).Add(run.floor);
+    csv.Add(run.objective()).Add(run.excess()).Add(run.relative_E).Add(run.noise_E);
     csv.Add(run.iterations()).Add(run.seconds).Add(run.SecondsTo(kAsGood));
     csv.Add(run.stop_reason).Add(run.optimality);
     csv.Add(raises.iterations.size()).Add(raises.largest).Add(run.agreement());

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -99,9 +98,9 @@ std::string LowestSentence(std::span<const StudyRun> runs,
                      ", start " + std::to_string(lowest->start);
   if (lowest->relative_E) {
     text += ": " + PercentText(*lowest->relative_E) + " of a black model's";
-    if (lowest->floor.value_or(0) > 0) {
-      text += "; no model gets below " + PercentText(*lowest->floor) +
-              ", by which samples of the same directions differ";
+    if (lowest->noise_E) {
+      text += ". Noise alone would leave " + PercentText(*lowest->noise_E) +
+              ", as far as samples of the same directions tell";
     }
   }
   return text + ".";
@@ -126,42 +125,14 @@ std::string LimitSentence(const std::vector<MethodSummary>& methods) {
          ".";
 }
 
-// "after 2.1 s"; of several problems "after 2.1 s (copper) and 9.2 s (felt), 4.4 s in the geometric
-// mean", of the median run on each.
-std::string TimesText(const std::vector<MethodSummary>& summaries, const std::string& method) {
-  constexpr size_t kMostProblems = 3;
-  std::vector<std::string> each;
-  double least = std::numeric_limits<double>::infinity(), most = 0, logarithms = 0;
-  size_t problems = 0;
-  bool short_of_limit = false;
-  for (const MethodSummary& of : summaries) {
-    if (of.method != method) continue;
-    ++problems;
-    const double seconds = of.seconds_to_as_good;
-    if (!std::isfinite(seconds)) {
-      short_of_limit = short_of_limit || of.short_of_limit;
-      continue;
-    }
-    each.push_back(Text(seconds, 2) + " s (" + of.problem + ")");
-    least = std::min(least, seconds);
-    most = std::max(most, seconds);
-    logarithms += std::log(std::max(seconds, 1e-3));
-  }
-  const std::string not_there = short_of_limit ? "not within the limit" : "never";
-  if (each.empty()) return not_there;
-  if (problems == 1) return "after " + Text(least, 2) + " s";
-  std::string text =
-      "after " + (each.size() <= kMostProblems ? Listed(each)
-                                               : Text(least, 2) + " to " + Text(most, 2) + " s");
-  if (each.size() > 1) {
-    text += ", " + Text(std::exp(logarithms / static_cast<double>(each.size())), 2) +
-            " s in the geometric mean";
-  }
-  if (each.size() < problems) {
-    text += ", on " + std::to_string(each.size()) + " of " + std::to_string(problems) +
-            " problems, and " + not_there + " on the others";
-  }
-  return text;
+// "after 2.1 s" on one problem; of several the geometric mean, "after 4.4 s on 2 of 3 problems".
+std::string TimesText(const Times& times) {
+  const std::string where = times.of == 1 || times.reached == times.of
+                                ? ""
+                                : " on " + std::to_string(times.reached) + " of " +
+                                      std::to_string(times.of) + " problems";
+  if (times.reached == 0) return times.short_of_limit ? "not within the limit" : "never";
+  return "after " + Text(times.geometric_mean, 2) + " s" + where;
 }
 
 // The method of the least E of held-out samples, in the median, and those within kAsGood of it.
@@ -276,9 +247,9 @@ std::vector<std::string> VerdictOn(std::span<const StudyRun> runs) {
   tell("Runs within 1 % of the lowest E" + each,
        [](const MethodSummary& of) { return Of(of.as_good); });
   sentences.push_back(LimitSentence(methods));
-  tell(problems.size() > 1 ? "They get there, in the median run on each problem"
+  tell(problems.size() > 1 ? "Their median run gets there, in the geometric mean of the problems"
                            : "They get there, in the median",
-       [&](const MethodSummary& of) { return TimesText(summaries, of.method); });
+       [&](const MethodSummary& of) { return TimesText(TimesOf(summaries, of.method)); });
   sentences.push_back(RaisedSentence(methods));
   const auto of_any = [](const Share& share) { return share.of > 0 ? Of(share) : std::string(); };
   tell("Other runs with the lobes of the lowest run" + each,
