@@ -167,9 +167,9 @@ FitSettings SettingsOf(const std::string& solver, const Values& values, int star
   // A larger form has a lower E on what it was fitted to.
   const bool changes_form = std::ranges::any_of(std::views::keys(values), ChangesForm);
   if (IsDefault("held_out") && changes_form) SetFlag("held_out", "true");
+  for (const auto& [flag, value] : values) SetFlag(flag, value);
   // What a solver found, without what would follow it. As to auto's choice of a form, that is it.
   if (IsDefault("raw") && !ChoosesModel()) SetFlag("raw", "true");
-  for (const auto& [flag, value] : values) SetFlag(flag, value);
   if (start > 1) {
     SetFlag("init", "random");
     SetFlag("seed", std::to_string(FLAGS_seed + start - 1));

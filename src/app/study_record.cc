@@ -58,7 +58,7 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
   if (!Exists(path)) {
     if (!has_tables) return;
     throw Error("'" + out + "' has tables without " + kStudyRecordName +
-                ", which says of what runs they are; give another --out, or remove it");
+                ", which says of what runs they are; give another --out, or remove that folder");
   }
   std::map<std::string, const StudyJob*> job_of;
   for (const StudyJob& job : jobs) job_of[job.run.folder] = &job;
@@ -84,7 +84,7 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
   }
   if (!is_other) return;
   throw Error("'" + out + "' has another study, whose results this one would replace: " +
-              Printable(command) + "; give another --out, or remove it");
+              Printable(command) + "; give another --out, or remove that folder");
 }
 
 std::string StudyRecord(std::span<const StudyJob> jobs, const std::string& command) {

@@ -28,7 +28,10 @@ std::optional<HeldOutError> FitWithoutHeldOut(
   of_part.on_start = nullptr;
   of_part.on_iteration = nullptr;
   of_part.on_model = nullptr;
-  if (!options.start_model && !options.choose_form) {
+  if (options.choose_form) {
+    // A choice among what is left holds out other blocks of it: those of the same seed are gone.
+    of_part.seed = ~*options.held_out;
+  } else if (!options.start_model) {
     // The default form of fewer scattered samples would be a smaller one.
     const Objective part(kept, spec, options.weighting, options.num_threads);
     of_part.start_model = FindInitialModel(options.init).make(part, options.seed);

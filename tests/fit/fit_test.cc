@@ -81,6 +81,17 @@ TEST(Fit, IsHeldAgainstSamplesThatItHasNotSeen) {
   EXPECT_GT(fit.held_out->mean_delta_e, 0);
 }
 
+TEST(Fit, ChoosesAFormWithoutTheHeldOutSamples) {
+  const Measurement measured = LoadMeasurement("synth:copper@20x20x40", {.noise = 0.05});
+  FitOptions options = Quick();
+  options.choose_form = true;
+  options.held_out = options.seed;
+  options.max_parameters = 200;
+  const FitResult fit = Fit(measured, options);
+  ASSERT_TRUE(fit.held_out);
+  EXPECT_LT(fit.held_out->relative_objective, 1);
+}
+
 TEST(Fit, HoldsNothingOutOfTooFewSamples) {
   Measurement measured = LoadMeasurement("synth:plastic@12x12x24");
   FitOptions options = Quick();

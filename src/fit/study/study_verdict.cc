@@ -151,13 +151,14 @@ std::string HeldOutSentence(const std::vector<MethodSummary>& summaries,
       if (of.problem != problem || !of.held_out_E || &of == best) continue;
       if (*of.held_out_E <= (1 + kAsGood) * *best->held_out_E) as_good.push_back(of.method);
     }
-    parts.push_back((problems.size() > 1 ? problem + " " : "") + "by " + best->method + ", E " +
-                    PercentText(*best->held_out_E) + " of a black model's" +
+    parts.push_back((problems.size() > 1 ? "of " + problem + " " : "") + "by " + best->method +
+                    ", E " + PercentText(*best->held_out_E) + " of a black model's" +
                     (as_good.empty() ? "" : " (within 1 % of that: " + Listed(as_good) + ")"));
   }
   constexpr size_t kMost = 5;
   if (parts.empty() || parts.size() > kMost) return "";
-  return "Samples that were held out are predicted best " + Listed(parts) + ".";
+  return std::string("Samples that were held out are predicted best") +
+         (problems.size() > 1 ? ": " : " ") + Listed(parts) + ".";
 }
 
 // Whether differences in E are seen.
@@ -177,8 +178,9 @@ std::string SeenSentence(std::span<const StudyRun> runs,
            ": their differences in E are not seen.";
   }
   if (unseen.count == 0) return "Each model can be told apart from the measurement" + where + ".";
-  const std::string each =
-      EachMethod(methods, [](const MethodSummary& of) { return Of(of.unseen); });
+  const std::string each = EachMethod(methods, [](const MethodSummary& of) {
+    return of.unseen.of > 0 ? Of(of.unseen) : std::string();
+  });
   return "Models that cannot be told apart from the measurement" + where + ": " +
          (each.empty() ? Of(unseen) : each) + ".";
 }

@@ -30,6 +30,12 @@ Key KeyOf(const BrdfSamples& samples, int j, bool anisotropic) {
   return {steps(at.theta_h), steps(at.theta_d), steps(phi)};
 }
 
+// Nothing for what rounding leaves of equal values.
+std::optional<RepeatNoise> UnlessRounding(const RepeatNoise& noise) {
+  constexpr double kRounding = 1e-20;
+  return noise.relative_objective > kRounding ? std::optional(noise) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<RepeatNoise> NoiseOfRepeats(const Objective& data) {
@@ -37,8 +43,8 @@ std::optional<RepeatNoise> NoiseOfRepeats(const Objective& data) {
   if (data.folded() != nullptr) {
     // Each bin has one with the directions exchanged, and a pair's variance is twice what remains
     // beside its mean.
-    if (!(data.IrreducibleEnergy() > 0)) return std::nullopt;
-    return RepeatNoise{samples.size(), 2 * data.IrreducibleEnergy() / data.MeasuredEnergy()};
+    const double black = data.MeasuredEnergy();
+    return UnlessRounding({samples.size(), black > 0 ? 2 * data.IrreducibleEnergy() / black : 0});
   }
   std::vector<Key> keys(samples.size());
   for (int j = 0; j < samples.size(); ++j) keys[j] = KeyOf(samples, j, data.spec().anisotropic());
@@ -66,9 +72,8 @@ std::optional<RepeatNoise> NoiseOfRepeats(const Objective& data) {
       E += squares * count / (count - 1);
     }
   }
-  if (!(E > 0)) return std::nullopt;
-  noise.relative_objective = E / black;
-  return noise;
+  if (black > 0) noise.relative_objective = E / black;
+  return UnlessRounding(noise);
 }
 
 }  // namespace trilobe

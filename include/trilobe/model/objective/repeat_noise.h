@@ -15,7 +15,7 @@ struct RepeatNoise {
   double relative_objective = 0;
 };
 
-// Nothing if no samples repeat, or all that do agree to the bit, as copies do.
+// Nothing if no samples repeat, or all that do agree but for rounding, as copies do.
 std::optional<RepeatNoise> NoiseOfRepeats(const Objective& data);
 
 }  // namespace trilobe
