@@ -149,7 +149,7 @@ std::string ValuesOf(const std::vector<StudyRun>& runs, const Value& value) {
   return all;
 }
 
-// What the figures of a page depend on, for its readers.
+// Tells readers of a page what its figures depend on.
 std::vector<std::pair<std::string, std::string>> SettingOf(const std::vector<StudyRun>& runs,
                                                            const std::string& command) {
   std::string first, last;

@@ -45,7 +45,7 @@ std::vector<std::string> StudyFlags();
 // it says nothing.
 int RunsAtOnce();
 
-// What ends a run that does not converge, in words.
+// The limit that ends a run which does not converge, in words.
 std::string LimitsText();
 
 // Each source by each of --solvers, with each choice of values of --set, from each of --runs

@@ -21,7 +21,7 @@ std::string ExcessText(double excess) {
   return Text(1 + excess, 2) + " times";
 }
 
-// Where a limit stopped runs, more time might have led there.
+// More time might have led there where a limit stopped runs.
 std::string SecondsText(double seconds, const MethodSummary& of) {
   if (std::isfinite(seconds)) return Text(seconds, 2) + " s";
   if (of.failed == of.runs) return "";
@@ -138,7 +138,7 @@ std::string MethodsTable(std::span<const Column> all, std::span<const MethodSumm
   return html + "</tbody></table></div>\n";
 }
 
-// Of each method on each problem, the seconds until its median run is within 1 % of the lowest E,
+// The seconds until the median run of each method is within 1 % of the lowest E, on each problem,
 // and their geometric mean. Rows of cells; first the titles.
 std::vector<std::vector<std::string>> TimesRows(std::span<const StudyRun> runs) {
   const std::vector<MethodSummary> summaries = SummariesOf(runs);
@@ -186,7 +186,7 @@ std::string Definitions(const std::vector<std::pair<std::string, std::string>>& 
   return html + "</dl>\n";
 }
 
-// What the columns of the tables say.
+// Tells what the columns of the tables say.
 std::string Legend(std::span<const MethodSummary> summaries) {
   std::vector<std::pair<std::string, std::string>> terms;
   for (const std::span<const Column> columns :

@@ -30,7 +30,7 @@ std::string StudyPage(std::span<const StudyRun> runs, const StudyPageContents& c
 // The tables of the methods of one problem, for a terminal.
 std::string MethodsText(std::span<const MethodSummary> summaries);
 
-// Of several problems, how soon the methods come within 1 % of the lowest E, for a terminal.
+// A table of how soon methods come within 1 % of the lowest E on each of several problems.
 std::string TimesTextOf(std::span<const StudyRun> runs);
 
 }  // namespace trilobe

@@ -27,8 +27,8 @@ bool Exists(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
-// What the run depends on besides the content of its measurement and the program: a study that goes
-// on after these have changed is the same.
+// The settings that a run depends on. The content of its measurement and the program are none: a
+// study that goes on after these have changed is the same.
 std::string SettingsOf(const StudyJob& job) {
   const std::string& source = job.outcome.source;
   std::error_code ignored;

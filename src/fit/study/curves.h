@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-// What the figures of a study share, for gnuplot.
+// The figures of a study share this, for gnuplot.
 
 namespace trilobe {
 

@@ -19,9 +19,9 @@ struct StudyFigure {
   Drawing (*draw)(std::span<const StudyRun> runs);
 };
 
-// Of a problem: error against time; convergence; final errors; lobes.
+// Figures of one problem: error against time; convergence; final errors; lobes.
 std::span<const StudyFigure> StudyFigures();
-// Of all problems: performance and data profiles (Profile).
+// Figures of all problems: performance and data profiles (Profile).
 std::span<const StudyFigure> ProfileFigures();
 
 // Draws a figure as NAME.svg and NAME.pdf into an existing folder. Returns whether there was

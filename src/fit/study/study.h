@@ -38,7 +38,7 @@ struct StudyRun {
   std::optional<double> psnr_db = {}, mean_delta_e = {};
   bool of_sphere = true;
   bool seen = true;  // false: cannot be told apart from the measurement
-  // Of the same fit without some blocks of directions, at these (HeldOutError).
+  // The error at held-out directions of the same fit without these (HeldOutError).
   std::optional<double> held_out_E = {}, held_out_delta_e = {};
   // When and where it was made, and beside how many others.
   std::string date = {}, processor = {};
@@ -130,7 +130,8 @@ struct MethodSummary {
 // One for each problem and method, in the order of their first runs.
 std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs);
 
-// What the median runs of a method take until E is within kAsGood of the lowest, over problems.
+// The time that median runs of a method take until E is within kAsGood of the lowest, over
+// problems.
 struct Times {
   int reached = 0, of = 0;      // problems
   double geometric_mean = 0;    // of those reached [s]
@@ -148,9 +149,9 @@ std::string EndingWords(const std::string& reason);
 // "10 of 10 stopped by --max_iterations", "3 of 5 converged, 2 of 5 stopped by --max_seconds".
 std::string EndingsText(const MethodSummary& of);
 
-// What the runs say, in sentences: who found the lowest E, how often, how soon; who was stopped by
-// a limit; who raised E; whether the lobes are the same; what predicts held-out samples; what is
-// seen.
+// Says in sentences what the runs show: who found the lowest E, how often, how soon; who was
+// stopped by a limit; who raised E; whether the lobes are the same; what predicts held-out samples;
+// what is seen.
 std::vector<std::string> VerdictOn(std::span<const StudyRun> runs);
 
 // Tables as CSV, with a header line (docs/study.md). Infinite values are "inf".

@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// What noise alone leaves of E, estimated from samples of the same pair of directions: repeated
-// ones and, for an isotropic spec, those with light and eye exchanged.
+// The part of E that noise alone leaves, estimated from samples of the same pair of directions:
+// repeated ones and, for an isotropic spec, those with light and eye exchanged.
 struct RepeatNoise {
   int samples = 0;  // that have another of the same directions
   // The expected E of a perfect model at these, over a black model's: their variance, unbiased.
