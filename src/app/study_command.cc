@@ -144,7 +144,7 @@ std::string ValuesOf(const std::vector<StudyRun>& runs, const Value& value) {
   std::string all;
   for (const auto& [text, count] : counts) {
     all += (all.empty() ? "" : ", ") + text;
-    if (counts.size() > 1) all += " (" + std::to_string(count) + " runs)";
+    if (counts.size() > 1) all += " (" + std::to_string(count) + (count == 1 ? " run)" : " runs)");
   }
   return all;
 }
