@@ -270,6 +270,7 @@ def draw(drawn, _):
     products = {}
     if drawn["solvers"]:
         products["solvers.md"] = _solver_table(drawn["solvers"], drawn["missing"])
+    if drawn["curves"]:
         products["curves"] = _curves_figure(drawn["curves"])
     if drawn["elements"]:
         products["elements.md"] = _elements_table(drawn["elements"], drawn["missing"])

@@ -70,9 +70,8 @@ struct Share {
   double high() const;
 };
 
-// What the runs of one method on one problem have in common. Medians are the lower of the two
-// middle values, since between a finite and an infinite one is nothing; failed runs count as
-// infinite.
+// What the runs of one method on one problem have in common. A failed run counts as infinite, and
+// so does a median if half of the runs are.
 struct MethodSummary {
   std::string problem, method;
   int runs = 0, failed = 0;
