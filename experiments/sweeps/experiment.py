@@ -67,24 +67,6 @@ def tabulate(_, results):
 # --- pictures -------------------------------------------------------------------------------------
 
 
-def _elements_figure(elements):
-    """The worst relative rise of each material, sorted."""
-    from lab import plots
-    figure, axes = plots.plt.subplots(figsize=(8, 4))
-    for solver, rows in tables.groups(elements, "solver").items():
-        worst = sorted(max(row["worst_relative_rise"], 1e-17) for row in rows)
-        axes.plot(range(1, len(worst) + 1), worst, "o", markersize=4, label=solver,
-                  color=plots.solver_style(solver)["color"])
-    axes.axhline(numpy.finfo(float).eps, color=plots.GREY, linewidth=1)
-    axes.annotate("rounding of one double", (1, numpy.finfo(float).eps * 1.3), fontsize=9,
-                  color="#555555")
-    axes.set(yscale="log", ylim=(1e-17, 1e-9), xlabel="materials, sorted",
-             ylabel="worst relative rise of E in one update",
-             title="The worst rise of each material, a dot each (1e-17: none at all)")
-    plots.label_ends(axes)
-    return figure
-
-
 def _elements_table(rows, missing):
     lines = []
     for (solver, weighting), (of, lost) in tables.with_missing(
@@ -148,8 +130,6 @@ def draw(drawn, _):
     products = {}
     if drawn["elements"]:
         products["elements.md"] = _elements_table(drawn["elements"], drawn["missing"])
-        if any(row["raised"] for row in drawn["elements"]):  # else there is nothing to see
-            products["elements"] = _elements_figure(drawn["elements"])
     if drawn["filter"]:
         products["filter.md"] = _filter_table(drawn["filter"])
         products["filter"] = _filter_figure(drawn["filter"])

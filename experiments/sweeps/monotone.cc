@@ -53,12 +53,12 @@ struct Rises {
   }
 };
 
-// Which node of G has moved.
+// A node of G that has moved.
 struct MovedNode {
   int table, node;
 };
 
-// Where two models differ; nothing if that is in no node of G.
+// Returns the first node of G in which two models differ; nothing if they differ in none.
 std::optional<MovedNode> FindMovedNode(const FactorModel& before, const FactorModel& after) {
   const ModelSpec& spec = after.spec();
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
@@ -71,7 +71,7 @@ std::optional<MovedNode> FindMovedNode(const FactorModel& before, const FactorMo
   return {};
 }
 
-// How E changes with that node when all others stay, added up sample by sample (paper eqs. 5 to 7).
+// Adds up, sample by sample, how E changes with that node when all others stay (paper eqs. 5 to 7).
 ElementQuartic QuarticOf(const std::vector<WeightedSample>& samples, const FactorModel& model,
                          const MovedNode& moved) {
   const ModelSpec& spec = model.spec();
@@ -97,8 +97,8 @@ ElementQuartic QuarticOf(const std::vector<WeightedSample>& samples, const Facto
   return change;
 }
 
-// Of the cubics E' = 0 along nodes of G that have moved, how many have one real root. Seen from
-// where the node is now, the polynomial has as many as from where it was.
+// Counts the cubics E' = 0 along nodes of G that have moved, and those of one real root. The
+// polynomial has as many roots seen from where the node is now as from where it was.
 struct Cubics {
   int all = 0;
   int of_one_root = 0;

@@ -207,7 +207,7 @@ TEST(AwlsAccelerated, OutrunsAwls) {
   }
 }
 
-// docs/decisions/sweeps.md
+// The claim is that of docs/decisions/sweeps.md.
 TEST(AwlsBlock, BeginsWithThreeSweepsOfAwls) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 2), spec);
