@@ -148,7 +148,7 @@ def _bands(runs, reference):
             of_reference = of_reference[list(reference.order)]
         for table, entry in zip(*numpy.nonzero(observed)):
             of = values[:, table, entry]
-            low, middle, high = (float(f"{stats.quantile(of, q):.4g}") for q in (.05, .5, .95))
+            low, middle, high = (float(f"{value:.4g}") for value in stats.spread(of, .05))
             rows.append({"factor": factor, "table": int(table) + 1, "entry": int(entry),
                          "runs": len(runs), "low": low, "median": middle, "high": high,
                          "reference": float(f"{of_reference[table, entry]:.4g}")})
@@ -390,7 +390,7 @@ def _percent(rows, holds):
 def _range(values, digits=3):
     if not values:
         return "–"
-    middle, low, high = (f"{stats.quantile(values, q):.{digits}g}" for q in (.5, .05, .95))
+    low, middle, high = (f"{value:.{digits}g}" for value in stats.spread(values, .05))
     return f"{middle} [{low}, {high}]"
 
 

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/math/quantile.h"
 #include "fit/study/curves.h"
 #include "io/pictures/gnuplot.h"
 
@@ -226,11 +228,10 @@ std::string PanelTitle(const std::string& method, const std::vector<const StudyR
   for (const StudyRun* run : runs) {
     if (run->lobes) matches.push_back(run->lobes->match[lobe]);
   }
-  std::ranges::sort(matches);
   constexpr size_t kLetters = 34;
   const std::string name = method.size() > kLetters ? method.substr(0, kLetters - 1) + "…" : method;
   std::string text = "lobe " + std::to_string(lobe + 1);
-  if (!matches.empty()) text += ", match " + Text(matches[(matches.size() - 1) / 2], 2);
+  if (!matches.empty()) text += ", match " + Text(Median(std::move(matches)), 2);
   return GnuplotQuote(name) + R"(."\n".)" + GnuplotQuote(text);
 }
 

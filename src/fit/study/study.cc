@@ -4,19 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "core/math/quantile.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// The lower median, of at least one value: between a finite value and infinity is nothing.
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 std::optional<double> MedianOf(const std::vector<double>& values) {
   return values.empty() ? std::nullopt : std::optional<double>(Median(values));

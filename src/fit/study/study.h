@@ -95,9 +95,8 @@ struct Interval {
 };
 Interval WilsonInterval(double share, int n);
 
-// What the runs of one method on one problem have in common. Medians are the lower of the two
-// middle values, since between a finite and an infinite one is nothing; failed runs count as
-// infinite.
+// Figures of the runs of one method on one problem. A failed run counts as infinite, and
+// so does a median if half of the runs are.
 struct MethodSummary {
   std::string problem, method;
   int runs = 0, failed = 0;

@@ -111,6 +111,7 @@ TEST(Study, LobesAreComparedWithTheLowestRunAndWithTheMethodsOwn) {
       Compared({RunOf("a", 1, {8, 2}, 1), RunOf("a", 2, {8, 2.5}, 1), RunOf("b", 1, {8, 3}, 2),
                 RunOf("b", 2, {8, 3.5}, 2), FailedRun("b", 3)});
   const std::vector<MethodSummary> summaries = SummariesOf(runs);
+  EXPECT_EQ(summaries[0].median, 0.125);
   // A run is not compared with itself.
   EXPECT_EQ(summaries[0].same_lobes.count, 1);
   EXPECT_EQ(summaries[0].same_lobes.of, 1);
