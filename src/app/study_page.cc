@@ -52,7 +52,7 @@ constexpr Column kColumns[] = {
      }},
     {"same lobes", [](const MethodSummary& of) { return ShareText(of.same_lobes); }},
     {"again", [](const MethodSummary& of) { return ShareText(of.same_again); }},
-    {"least match", [](const MethodSummary& of) { return Optional(of.least_match, 2); }},
+    {"agreement", [](const MethodSummary& of) { return Optional(of.agreement, 2); }},
     {"sphere, dB", [](const MethodSummary& of) { return Optional(of.psnr_db, 3); }},
 };
 
@@ -92,7 +92,7 @@ std::string RunsTable(const std::vector<StudyRun>& runs) {
   std::string html =
       "<details><summary>Every run</summary><div class=\"scroll\"><table><thead><tr>"
       "<th>method</th><th>start</th><th>E</th><th>above lowest</th>"
-      "<th>iterations</th><th>seconds</th><th>least match</th><th></th></tr></thead>"
+      "<th>iterations</th><th>seconds</th><th>agreement</th><th></th></tr></thead>"
       "<tbody>\n";
   for (const StudyRun& run : runs) {
     html += "<tr><th scope=\"row\">" + EscapedMarkup(Printable(run.method)) + "</th><td>" +
@@ -103,7 +103,7 @@ std::string RunsTable(const std::vector<StudyRun>& runs) {
     }
     html += "<td>" + Text(run.objective(), 5) + "</td><td>" + ExcessText(run.excess()) +
             "</td><td>" + std::to_string(run.iterations()) + "</td><td>" + Text(run.seconds, 3) +
-            "</td><td>" + (run.lobes ? Text(run.lobes->least(), 2) : "") + "</td><td><a href=\"" +
+            "</td><td>" + (run.lobes ? Text(run.lobes->agreement, 2) : "") + "</td><td><a href=\"" +
             EncodeAddress(run.folder) + "/report.json\">report</a></td></tr>\n";
   }
   return html + "</tbody></table></div></details>\n";

@@ -53,10 +53,11 @@ const StudyRun* Lowest(const std::vector<const StudyRun*>& runs) {
   return lowest;
 }
 
-std::optional<LobeOrderMatch> Match(const StudyRun* reference, const StudyRun& run) {
+std::optional<LobeMatch> Match(const StudyRun* reference, const StudyRun& run) {
   if (reference == nullptr || reference == &run) return {};
-  const ModelSpec& spec = run.file.model.spec();
-  if (spec.lobes == 0 || spec != reference->file.model.spec()) return {};
+  const ModelSpec &spec = run.file.model.spec(), &of_reference = reference->file.model.spec();
+  if (!HaveComparableLobes(spec, of_reference)) return {};
+  if (spec.lobes == 0 && of_reference.lobes == 0) return {};
   return MatchLobes(reference->file, run.file);
 }
 
@@ -89,7 +90,7 @@ MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::str
                         const std::string& method) {
   MethodSummary summary{.problem = problem, .method = method};
   summary.runs = static_cast<int>(runs.size());
-  std::vector<double> excess, seconds, seconds_to, iterations, psnr, delta_e, least;
+  std::vector<double> excess, seconds, seconds_to, iterations, psnr, delta_e, agreement;
   double all_seconds = 0;
   for (const StudyRun* run : runs) {
     excess.push_back(run->excess());
@@ -110,10 +111,10 @@ MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::str
     summary.raised += static_cast<int>(raises.iterations.size());
     summary.largest_rise = std::max(summary.largest_rise, raises.largest);
     if (run->lobes) {
-      least.push_back(run->lobes->least());
-      Count(run->lobes->least() >= kSameLobes, &summary.same_lobes);
+      agreement.push_back(run->lobes->agreement);
+      Count(run->lobes->agreement >= kSameLobes, &summary.same_lobes);
     }
-    if (run->own_lobes) Count(run->own_lobes->least() >= kSameLobes, &summary.same_again);
+    if (run->own_lobes) Count(run->own_lobes->agreement >= kSameLobes, &summary.same_again);
   }
   summary.lowest = std::ranges::min(excess);
   summary.highest = std::ranges::max(excess);
@@ -125,7 +126,7 @@ MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::str
   summary.iterations = MedianOf(iterations).value_or(0);
   summary.psnr_db = MedianOf(psnr);
   summary.mean_delta_e = MedianOf(delta_e);
-  summary.least_match = MedianOf(least);
+  summary.agreement = MedianOf(agreement);
   return summary;
 }
 
@@ -231,13 +232,13 @@ std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs) {
 std::string RunsCsv(std::span<const StudyRun> runs) {
   Csv csv(
       "problem,method,start,objective,excess,iterations,seconds,seconds_to_1_percent,raised,"
-      "largest_rise,least_match,psnr_db,mean_delta_e,stop_reason,folder,error");
+      "largest_rise,lobe_agreement,psnr_db,mean_delta_e,stop_reason,folder,error");
   for (const StudyRun& run : runs) {
     const SolverSummary::Raises raises = SolverSummary::FindRaises(run.trace);
     csv.Add(run.problem).Add(run.method).Add(run.start);
     csv.Add(run.objective()).Add(run.excess()).Add(run.iterations()).Add(run.seconds);
     csv.Add(run.SecondsTo(kAsGood)).Add(raises.iterations.size()).Add(raises.largest);
-    csv.Add(run.lobes ? std::optional(run.lobes->least()) : std::nullopt);
+    csv.Add(run.lobes ? std::optional(run.lobes->agreement) : std::nullopt);
     csv.Add(run.psnr_db).Add(run.mean_delta_e).Add(run.stop_reason).Add(run.folder).Add(run.error);
     csv.EndRow();
   }
@@ -249,14 +250,14 @@ std::string MethodsCsv(std::span<const MethodSummary> summaries) {
       "problem,method,runs,failed,lowest_excess,median_excess,highest_excess,within_1_percent,"
       "within_1_percent_low,within_1_percent_high,within_0.1_percent,seconds,"
       "seconds_to_1_percent,expected_seconds_to_1_percent,iterations,raised,largest_rise,"
-      "same_lobes_as_lowest,same_lobes_again,least_match,psnr_db,mean_delta_e");
+      "same_lobes_as_lowest,same_lobes_again,lobe_agreement,psnr_db,mean_delta_e");
   for (const MethodSummary& of : summaries) {
     csv.Add(of.problem).Add(of.method).Add(of.runs).Add(of.failed);
     csv.Add(of.lowest).Add(of.median).Add(of.highest);
     csv.Add(of.as_good.value()).Add(of.as_good.low()).Add(of.as_good.high());
     csv.Add(of.the_same.value()).Add(of.seconds).Add(of.seconds_to_as_good);
     csv.Add(of.expected_seconds).Add(of.iterations).Add(of.raised).Add(of.largest_rise);
-    csv.Add(of.same_lobes.value()).Add(of.same_again.value()).Add(of.least_match);
+    csv.Add(of.same_lobes.value()).Add(of.same_again.value()).Add(of.agreement);
     csv.Add(of.psnr_db).Add(of.mean_delta_e);
     csv.EndRow();
   }

@@ -33,9 +33,9 @@ struct StudyRun {
   // Set by CompareRuns: the lowest E of the problem's runs, and what an excess over it is relative
   // to.
   double lowest = 0, unit = 1;
-  // With the lobes of the problem's lowest run and of the method's own, unless these are of another
-  // spec, of no lobes, or this run itself.
-  std::optional<LobeOrderMatch> lobes = {}, own_lobes = {};
+  // With the lobes of the problem's lowest run and of the method's own, unless these cannot be
+  // compared, are none, or are this run's.
+  std::optional<LobeMatch> lobes = {}, own_lobes = {};
 
   bool failed() const { return !error.empty(); }
   double objective() const;  // the lowest E of its trace; infinite if it failed
@@ -49,7 +49,7 @@ struct StudyRun {
 // Below this excess a run has found the lowest E for all purposes, and below the other to the
 // digits that are printed.
 inline constexpr double kAsGood = 0.01, kTheSame = 0.001;
-// Lobes are the same where the least match is at least this.
+// Lobes are the same where their agreement is at least this.
 inline constexpr double kSameLobes = 0.9;
 
 // Compares each run with the lowest of its problem. An excess is relative to the lowest E. Where
@@ -91,8 +91,7 @@ struct MethodSummary {
   std::optional<double> psnr_db = {}, mean_delta_e = {};  // medians
   // Other runs whose lobes are those of the problem's lowest run, and of the method's own.
   Share same_lobes = {}, same_again = {};
-  std::optional<double> least_match =
-      {};  // median of the least match with the problem's lowest run
+  std::optional<double> agreement = {};  // median, with the problem's lowest run
 };
 
 // One for each problem and method, in the order of their first runs.

@@ -117,8 +117,8 @@ TEST(Study, LobesAreComparedWithTheLowestRunAndWithTheMethodsOwn) {
   EXPECT_EQ(summaries[1].same_lobes.of, 2);
   EXPECT_EQ(summaries[1].same_again.count, 1);
   EXPECT_EQ(summaries[1].same_again.of, 1);
-  ASSERT_TRUE(summaries[1].least_match);
-  EXPECT_LT(*summaries[1].least_match, kSameLobes);
+  ASSERT_TRUE(summaries[1].agreement);
+  EXPECT_LT(*summaries[1].agreement, kSameLobes);
 }
 
 TEST(Study, VerdictSaysWhoWonAndWhoRaisedE) {
