@@ -32,7 +32,8 @@
 DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened and lm_dogleg");
 DEFINE_string(weightings, "appearance", "a list of weightings of the objective");
 DEFINE_string(init, "roughness", "the starts, as `trilobe fit` has them");
-DEFINE_int32(starts, 1, "how many, of seeds 1, 2, ...");
+DEFINE_int32(starts, 1, "how many, of seeds that follow each other");
+DEFINE_int32(first_start, 1, "the first seed");
 DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
 DEFINE_string(corrupt, "", "as `trilobe fit` has it");
 DEFINE_uint64(data_seed, 1, "of what is random in --corrupt");
@@ -40,7 +41,7 @@ DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond 
 DEFINE_int32(lights, 200, "lights on the sphere that is compared");
 DEFINE_int32(max_iterations, 0, "as `trilobe fit` has it; 0: its default");
 DEFINE_double(tolerance, -1, "as `trilobe fit` has it; -1: its default");
-DEFINE_string(models, "", "a folder for the fitted models, WEIGHTING-SOLVER-SEED.json");
+DEFINE_string(models, "", "a folder for the fitted models, SOLVER-SEED.json");
 
 namespace trilobe {
 namespace {
@@ -123,7 +124,7 @@ int Main(const std::string& source) {
   for (const std::string_view name : SplitCells(FLAGS_weightings)) {
     const Weighting weighting = FindWeighting(name);
     const Objective few = ThinnedObjective(corrupted ? *corrupted : clean_table, weighting);
-    for (int seed = 1; seed <= FLAGS_starts; ++seed) {
+    for (int seed = FLAGS_first_start; seed < FLAGS_first_start + FLAGS_starts; ++seed) {
       for (const std::string_view solver : solvers) {
         const Run run = FitFrom(init, seed, WayOf(solver), few);
         const double E = run.summary.final_objective;
@@ -139,8 +140,7 @@ int Main(const std::string& source) {
             StopReasonName(run.summary.stop_reason), OptimalityOf(few, run.model), run.seconds);
         std::fflush(stdout);
         if (!FLAGS_models.empty()) {
-          KeepModel(few, run.model,
-                    weighting.name + "-" + std::string(solver) + "-" + std::to_string(seed));
+          KeepModel(few, run.model, std::string(solver) + "-" + std::to_string(seed));
         }
       }
     }

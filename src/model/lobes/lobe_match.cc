@@ -23,7 +23,9 @@ struct Cosine {
     a += weight * x * x;
     b += weight * y * y;
   }
-  double value() const { return a > 0 && b > 0 ? both / (std::sqrt(a) * std::sqrt(b)) : 0; }
+  double value() const {
+    return a > 0 && b > 0 ? std::min(both / (std::sqrt(a) * std::sqrt(b)), 1.0) : 0;
+  }
 };
 
 // The largest entry, or 1: arrays are divided by it before they are squared.
