@@ -67,12 +67,12 @@ def units(setting):
 
 
 class _Run:
-    """A fit: what is said of it, and its model."""
+    """A fit: what is said of it, and where its model lies."""
 
     def __init__(self, labels, path, told):
         self.labels, self.path, self.told = labels, path, told
         self.objective = told["objective"]
-        self.model = lobes.Model.read(path)
+        self.lobes = json.loads(path.read_text())["lobes"]
         self.match = None  # with the reference
         self.own_agreement = None  # with its solver's run of the lowest E
 
@@ -81,7 +81,7 @@ class _Run:
         """Runs whose lobes are compared: each noisy fit with its solver's own without noise."""
         run, solver = self.labels["run"], self.labels["solver"]
         noise = run in (CLEAN, NOISE)
-        return self.labels["material"], NOISE if noise else run, self.model.lobes, solver if noise else None
+        return self.labels["material"], NOISE if noise else run, self.lobes, solver if noise else None
 
 
 def _runs_of(result, clock):
@@ -139,7 +139,7 @@ def _row(run, reference):
     told, labels = run.told, run.labels
     return {
         "run": labels["run"], "material": labels["material"], "solver": labels["solver"],
-        "lobes": run.model.lobes, "seed": labels["seed"], "objective": run.objective,
+        "lobes": run.lobes, "seed": labels["seed"], "objective": run.objective,
         "over_record": told.get("over_record"),
         # Under noise E is mostly noise, which a model must not follow.
         "excess": stats.excess(run.objective, reference.objective) if run.group[1] != NOISE else None,
@@ -151,28 +151,6 @@ def _row(run, reference):
         **{f"share_{k + 1}": float(shares[m]) for k, m in enumerate(run.match["lobe"])},
         "share_diffuse": float(shares[-1]), "psnr_db": told["psnr_db"],
         **{name: told.get(name) for name in ("rank", "condition", "unresolved")}}
-
-
-def _bands(runs, reference):
-    """Spread of each table entry over runs; lobes as numbered by the reference."""
-    rows = []
-    for factor in "DFG":
-        orders = [range(lobes.CHANNELS) if factor == "F" else run.match["lobe"] for run in runs]
-        # [runs][tables][entries]
-        values = numpy.array([getattr(run.model, factor)[list(order)]
-                              for run, order in zip(runs, orders)])
-        observed = numpy.array([run.model.observed[factor][list(order)]
-                                for run, order in zip(runs, orders)]).all(axis=0)
-        of_reference = getattr(reference.model, factor)
-        if factor != "F":
-            of_reference = of_reference[list(reference.match["lobe"])]
-        for table, entry in zip(*numpy.nonzero(observed)):
-            of = values[:, table, entry]
-            low, middle, high = (float(f"{stats.quantile(of, q):.4g}") for q in (.05, .5, .95))
-            rows.append({"factor": factor, "table": int(table) + 1, "entry": int(entry),
-                         "runs": len(runs), "low": low, "median": middle, "high": high,
-                         "reference": float(f"{of_reference[table, entry]:.4g}")})
-    return rows
 
 
 def _part_name(part, order):
@@ -207,12 +185,6 @@ def tabulate(setting, results):
     references = _compare(setting, runs)
     compared = [run for run in runs if run.group in references]
     rows = [_row(run, references[run.group]) for run in compared]
-    shown = setting.manifest["shown"]
-    bands = []
-    for group, reference in references.items():
-        of = [run for run in compared if run.group == group and run.labels["solver"] == shown["solver"]]
-        if of and group[1] == STARTS and group[0] in shown.get("materials", [group[0]]):
-            bands += [{"material": group[0], **row} for row in _bands(of, reference)]
     order_of = {run.path.parent: run.match["lobe"] for run in compared if run.labels["run"] == "lobes"}
     folder_of = {result.unit.key: result.folder for result in results}
     spectra, weakest = [], []
@@ -230,52 +202,10 @@ def tabulate(setting, results):
         weakest += [{**labels, **row} for row in _weakest(spectrum, order)]
     missing = [{**{key: result.labels[key] for key in ("run", "material", "solver")}, "unit": result.unit.path}
                for result in results if not result.folder]
-    return {"runs": rows, "bands": bands, "spectra": spectra, "weakest": weakest, "missing": missing}
+    return {"runs": rows, "spectra": spectra, "weakest": weakest, "missing": missing}
 
 
 # --- pictures -------------------------------------------------------------------------------------
-
-
-def _bands_figure(rows, title):
-    """Rows of panels: materials. Columns: D and G of each lobe, F of each channel."""
-    from lab import plots
-    by_material = tables.groups(rows, "material")
-    lobe_colours = (plots.BLUE, plots.ORANGE, plots.PURPLE, plots.GREEN, plots.BLACK)
-    channel_colours = (plots.VERMILION, plots.GREEN, plots.BLUE)
-    columns = (("D", "D against θh (degrees)", lobe_colours, "lobe {}"),
-               ("F", "F against θd (degrees)", channel_colours, "{}"),
-               ("G", "G against θi and θo (degrees)", lobe_colours, "lobe {}"))
-    figure, panels = plots.plt.subplots(len(by_material), 3, squeeze=False,
-                                        figsize=(12.5, 2.9 * len(by_material) + 0.7))
-    for line, (material, of_material) in zip(panels, by_material.items()):
-        for axes, (factor, label, colours, name) in zip(line, columns):
-            of_factor = [row for row in of_material if row["factor"] == factor]
-            for table, of in tables.groups(of_factor, "table").items():
-                entries = numpy.array([row["entry"] for row in of])
-                x = (entries + 0.5) ** 2 / 90 if factor == "D" else entries + 0.5
-                low, middle, high, best = (numpy.array([row[column] for row in of]) for column in
-                                           ("low", "median", "high", "reference"))
-                colour = colours[table - 1]
-                which = ("red", "green", "blue")[table - 1] if factor == "F" else table
-                axes.fill_between(x, low, high, color=colour, alpha=0.25, linewidth=0)
-                axes.plot(x, middle, color=colour, linewidth=1.5, label=name.format(which))
-                axes.plot(x, best, color=colour, linewidth=1, linestyle=":")
-            if factor == "D":
-                top = max(row["high"] for row in of_factor)
-                axes.set(xscale="log", yscale="log", ylim=(1e-6 * top, 2 * top))
-                plots.plain_numbers(axes.xaxis)
-                axes.set_ylabel(material, fontsize=10)
-            elif factor == "F":
-                top = max(row["high"] for row in of_factor)
-                axes.set(yscale="log", ylim=(1e-4 * top, 2 * top))
-            else:
-                axes.set_ylim(bottom=0)
-            axes.set_xlabel(label)
-            axes.legend(fontsize=8)
-    runs = {row["runs"] for row in rows}
-    figure.suptitle(f"{title}: 5 to 95 % of {min(runs)} runs (band), median (line), reference "
-                    "(dotted)", x=0.01, ha="left")
-    return figure
 
 
 def _shares_figure(rows):
@@ -513,8 +443,6 @@ def draw(drawn, _):
     if of["lobes"]:
         products["lobes.md"] = _lobes_table(of["lobes"])
         products["lobes"] = _lobes_figure(of["lobes"])
-    if drawn["bands"]:
-        products["bands"] = _bands_figure(drawn["bands"], "Random starts")
     if drawn["spectra"]:
         products["spectra"] = _spectra_figure(drawn["spectra"])
         products["weakest.md"] = _weakest_table(drawn["weakest"])
