@@ -2,6 +2,7 @@
 import itertools
 import json
 import math
+import statistics
 
 import numpy
 
@@ -335,8 +336,8 @@ def _range(values, digits=3):
     values = [value for value in values if value is not None]
     if not values:
         return "–"
-    middle, low, high = (f"{stats.quantile(values, q):.{digits}g}" for q in (.5, .05, .95))
-    return f"{middle} [{low}, {high}]"
+    low, high = (f"{stats.quantile(values, q):.{digits}g}" for q in (.05, .95))
+    return f"{statistics.median(values):.{digits}g} [{low}, {high}]"
 
 
 def _same(rows, column="agreement"):
