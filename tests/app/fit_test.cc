@@ -104,7 +104,8 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_NEAR(shares, 1, 1e-12);
   for (const char* const line :
        {"appearance   sphere in studio", "solver       awls: 3 iterations",
-        "options      max_iterations 3", "phases       ", "error        E is "}) {
+        "of a black model's, its scaled gradient ", "options      max_iterations 3",
+        "phases       ", "error        E is "}) {
     EXPECT_THAT(result.out, HasSubstr(line));
   }
 

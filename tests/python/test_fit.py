@@ -181,6 +181,21 @@ def test_takes_the_materials_that_come_along(plastic):
         trilobe.load("material:linnen")
 
 
+def test_matches_lobes(fitted, tmp_path):
+    brdf = fitted.model
+    turned = brdf.replace(s=brdf.s[::-1] * 4, D=brdf.D[::-1] / 4, G=brdf.G[::-1])
+    same = trilobe.match_lobes(brdf, turned)
+    assert same.lobe == list(range(brdf.lobes))[::-1]
+    assert same.agreement == pytest.approx(1) and same.match == pytest.approx([1] * brdf.lobes)
+    stronger = brdf.replace(s=brdf.s * 5)
+    stronger.save(tmp_path / "stronger.json")
+    assert trilobe.match_lobes(brdf, tmp_path / "stronger.json").agreement == pytest.approx(0.2)
+    fewer = trilobe.Brdf(brdf.d, brdf.s[:1], brdf.D[:1], brdf.F, brdf.G[:1])
+    assert trilobe.match_lobes(brdf, fewer).lobe == [0] + [-1] * (brdf.lobes - 1)
+    with pytest.raises(trilobe.Error, match="same sharing and axes"):
+        trilobe.match_lobes(isotropic(), isotropic(60))
+
+
 def test_lists():
     solvers = trilobe.solvers()
     assert solvers[0].name == "auto"

@@ -153,7 +153,11 @@ void PrintSummary(const FitReport& report) {
   std::cout << "solver       " << summary.solver << ": " << summary.iterations << " iterations, "
             << EndText(summary.stop_reason) << "; E is "
             << Text(100 * RelativeTo(report.black_objective, summary.final_objective), 3)
-            << " % of a black model's\n";
+            << " % of a black model's";
+  if (summary.diagnosis) {
+    std::cout << ", its scaled gradient " << Text(summary.diagnosis->optimality, 2);
+  }
+  std::cout << "\n";
   if (!report.finished.steps.empty()) {
     PrintLine("finished     E is " + Text(100 * report.score.relative_objective, 3) + " %, after " +
               FinishedText(report));

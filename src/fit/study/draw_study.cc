@@ -201,6 +201,7 @@ std::string LobePanel(const StudyRun& lowest, const std::vector<const StudyRun*>
   Curves curves;
   for (const StudyRun* run : runs) {
     const int own = run == &lowest ? lobe : run->lobes->lobe[lobe];
+    if (own < 0) continue;  // it has fewer lobes
     const std::vector<std::vector<double>> rows = DistributionOf(run->file, own);
     if (!rows.empty()) curves.Add(rows, "with lines linewidth 2 " + StyleOf(method), "");
   }
@@ -216,6 +217,7 @@ std::string DistributionAxis(const StudyRun& lowest, std::span<const StudyRun> r
   for (const StudyRun& run : runs) {
     if (!run.lobes && &run != &lowest) continue;
     const int own = run.lobes ? run.lobes->lobe[lobe] : lobe;
+    if (own < 0) continue;
     for (const std::vector<double>& row : DistributionOf(run.file, own)) values.push_back(row[1]);
   }
   return "set yrange " + GnuplotLogRange(values, 5) + "\n" + LogTics(LogRange(values, 5), 'y');

@@ -43,10 +43,11 @@ const StudyRun* Lowest(const std::vector<const StudyRun*>& runs) {
   return lowest;
 }
 
-std::optional<LobeOrderMatch> Match(const StudyRun* reference, const StudyRun& run) {
+std::optional<LobeMatch> Match(const StudyRun* reference, const StudyRun& run) {
   if (reference == nullptr || reference == &run) return {};
-  const ModelSpec& spec = run.file.model.spec();
-  if (spec.lobes == 0 || spec != reference->file.model.spec()) return {};
+  const ModelSpec &spec = run.file.model.spec(), &of_reference = reference->file.model.spec();
+  if (!HaveComparableLobes(spec, of_reference)) return {};
+  if (spec.lobes == 0 && of_reference.lobes == 0) return {};
   return MatchLobes(reference->file, run.file);
 }
 
@@ -65,8 +66,6 @@ void Count(bool counts, Share* share) {
   share->count += counts ? 1 : 0;
   ++share->of;
 }
-
-double Agreement(const LobeOrderMatch& match) { return match.least(); }
 
 void Append(const std::optional<double>& value, std::vector<double>* values) {
   if (value) values->push_back(*value);
@@ -120,7 +119,7 @@ MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::str
       agreement.push_back(*alike);
       Count(*alike >= kSameLobes, &summary.same_lobes);
     }
-    if (run->own_lobes) Count(Agreement(*run->own_lobes) >= kSameLobes, &summary.same_as_own);
+    if (run->own_lobes) Count(run->own_lobes->agreement >= kSameLobes, &summary.same_as_own);
   }
   summary.lowest = std::ranges::min(excess);
   summary.highest = std::ranges::max(excess);
@@ -155,7 +154,7 @@ bool StudyRun::reached_limit() const {
 }
 
 std::optional<double> StudyRun::agreement() const {
-  return lobes ? std::optional(Agreement(*lobes)) : std::nullopt;
+  return lobes ? std::optional(lobes->agreement) : std::nullopt;
 }
 
 double StudyRun::SecondsTo(double most_excess) const {

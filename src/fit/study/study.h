@@ -49,9 +49,9 @@ struct StudyRun {
   // Set by CompareRuns: the lowest E of the problem's runs, and what an excess over it is relative
   // to.
   double lowest = 0, unit = 1;
-  // With the lobes of the problem's lowest run and of the method's own, unless these are of another
-  // spec, of no lobes, or this run itself.
-  std::optional<LobeOrderMatch> lobes = {}, own_lobes = {};
+  // With the lobes of the problem's lowest run and of the method's own, unless these cannot be
+  // compared, are none, or are this run's.
+  std::optional<LobeMatch> lobes = {}, own_lobes = {};
 
   bool failed() const { return !error.empty(); }
   double objective() const;  // the lowest E of its trace; infinite if it failed
