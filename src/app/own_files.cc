@@ -17,11 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// Whether the file is of the kind that its name says: a picture, a measurement, a text.
+// Whether the file is of the kind that its name says: a picture or a measurement.
 bool IsOfItsKind(const std::string& path, const std::string& content) {
   const std::string ending = EndingOf(path);
   if (ending == ".png") return content.starts_with("\x89PNG");
-  if (ending == ".txt") return content.starts_with("material");
   const MeasurementFormat* const format = RecogniseFormat(content);
   return format != nullptr && format->ending == ending;
 }

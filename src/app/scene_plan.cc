@@ -317,9 +317,7 @@ int RunSceneFit(const std::string& path) {
   PrintPlan(run, text);
   std::cout << text.str();
   if (!run.fits.empty()) {
-    folder.Write(kPlanTextName, [&](std::ostream& out) {
-      out << text.str() << "\n" << kOwnMark << "\n";
-    });
+    folder.Write(kPlanTextName, [&](std::ostream& out) { out << text.str(); });
     const std::string plan = plan_text(PlanToJson(run), folder.Files());
     folder.Write(kPlanName, [&](std::ostream& out) { out << plan; });
     std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "

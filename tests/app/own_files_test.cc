@@ -87,7 +87,6 @@ void ExpectAllRefused(const std::vector<std::string>& command, const std::string
     ExpectRefusal(command, path, folder);
     std::ofstream(path) << content;
   }
-  Succeed(command);
 }
 
 TEST(OwnFiles, OfAFitWithAllItsFiles) {
@@ -127,47 +126,59 @@ TEST(OwnFiles, OfAScene) {
   EXPECT_EQ(Contents(folder / "out/felt.previous.json"), own);
 }
 
-TEST(OwnFiles, OfOtherCommands) {
-  const TemporaryFolder folder;
-  const std::string out = folder / "out", model = folder / "fit/model.json",
-                    source = folder / "felt.csv";
-  Succeed(Fit(folder / "fit"));
-  Succeed({"synth", "felt@6x12", "--out=" + source});
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"forms", model, kSource, "--forms=retro", "--out="},
-           {"plot", model, kSource, "--trace=" + (folder / "fit/trace.csv"), "--out="},
-           {"info", kSource, "--out="},
-           {"view", model, kSource, "--out=/page.html"},
-           {"score", model, kSource, "--out=/seen.png"},
-           {"convert", model, "--out=/felt.bsdf"},
-           {"convert", model, "--out=/felt.zemax.bsdf", "--error=0.05"},
-           {"convert", model, "--out=/felt.xml"},
-           {"convert", model, "--out=/felt.xompt"},
-           {"convert", model, "--out=/felt.glsl"},
-           {"convert", model, "--out=/felt.hlsl"},
-           {"convert", model, "--out=/felt.mtlx", "--picture"},
-           {"convert", model, "--out=/felt.principled.json"},
-           {"convert", model, "--out=/felt.csv"},
-           {"convert", model, "--at=" + source, "--out=/at.csv"},
-           {"convert", kSource, "--out=/felt.csv"},
-           {"synth", "felt", "--out=/felt.binary"},
-           {"synth", "linen", "--out=/linen.bin"},
-           {"synth", "felt@6x12", "--out=/felt.csv"}}) {
+// The commands, whose --out is in the folder OUT.
+void ExpectAllRefused(const std::vector<std::vector<std::string>>& commands,
+                      const std::string& out) {
+  for (std::vector<std::string> command : commands) {
     fs::remove_all(out);
     fs::create_directory(out);
-    std::vector<std::string> command = words;
     for (std::string& word : command) {
-      if (word.starts_with("--out=")) word = "--out=" + out + word.substr(6);
+      if (word.starts_with("--out=OUT")) word = "--out=" + out + word.substr(9);
     }
     ExpectAllRefused(command, out);
   }
-  Succeed(Fit(folder / "many", {"synth:rubber@12x12x24"}));
-  const std::string page = folder / "many/index.html";
-  Succeed({"view", folder / "many"});
+}
+
+TEST(OwnFiles, OfPagesAndPictures) {
+  const TemporaryFolder folder;
+  const std::string fit = folder / "fit", model = fit + "/model.json";
+  Succeed(Fit(fit));
+  ExpectAllRefused({{"forms", model, kSource, "--forms=retro", "--out=OUT"},
+                    {"plot", model, kSource, "--trace=" + fit + "/trace.csv", "--out=OUT"},
+                    {"info", kSource, "--out=OUT"},
+                    {"view", model, kSource, "--out=OUT/page.html"},
+                    {"score", model, kSource, "--out=OUT/seen.png"}},
+                   folder / "out");
+  const std::string many = folder / "many", page = many + "/index.html";
+  Succeed(Fit(many, {"synth:rubber@12x12x24"}));
+  Succeed({"view", many});
   std::ofstream(page) << "mine";
-  ExpectRefusal({"view", folder / "many"}, page, folder / "many");
-  Succeed({"view", folder / "many", "--force"});
+  ExpectRefusal({"view", many}, page, many);
+  Succeed({"view", many, "--force"});
   EXPECT_THAT(Contents(page), HasSubstr("content=\"trilobe fit\""));
+}
+
+TEST(OwnFiles, OfConvertedModels) {
+  const TemporaryFolder folder;
+  const std::string model = folder / "fit/model.json", at = folder / "felt.csv";
+  Succeed(Fit(folder / "fit"));
+  Succeed({"synth", "felt@6x12", "--out=" + at});
+  ExpectAllRefused({{"convert", model, "--out=OUT/felt.bsdf", "--error=0.05"},
+                    {"convert", model, "--out=OUT/felt.xml"},
+                    {"convert", model, "--out=OUT/felt.xompt"},
+                    {"convert", model, "--out=OUT/felt.glsl"},
+                    {"convert", model, "--out=OUT/felt.mtlx", "--picture"},
+                    {"convert", model, "--at=" + at, "--out=OUT/at.csv"}},
+                   folder / "out");
+}
+
+TEST(OwnFiles, OfMeasurements) {
+  const TemporaryFolder folder;
+  ExpectAllRefused({{"convert", kSource, "--out=OUT/felt.csv"},
+                    {"synth", "felt", "--out=OUT/felt.binary"},
+                    {"synth", "linen", "--out=OUT/linen.bin"},
+                    {"synth", "felt@6x12", "--out=OUT/felt.csv"}},
+                   folder / "out");
 }
 
 // A MERL file cannot say whose it is: it stays, unless it would be the same. Where a report has its

@@ -53,8 +53,8 @@ def writing_commands(harness):
         "view": (["view", model, source], "out/page.html"),
     }
     for ending in ("binary", "csv", "bsdf", "zemax.bsdf", "xml", "xompt", "glsl", "hlsl", "mtlx", "principled.json"):
-        picture = ["--picture"] if ending in ("mtlx", "principled.json") else []
-        commands["convert." + ending] = (["convert", model, *picture], "out/felt." + ending)
+        more = {"csv": ["--max_angle=30"], "mtlx": ["--picture"]}.get(ending, [])
+        commands["convert." + ending] = (["convert", model, *more], "out/felt." + ending)
     for material, ending in (("felt", "binary"), ("linen", "bin"), ("felt@6x12", "csv")):
         commands["synth." + ending] = (["synth", material], "out/felt." + ending)
     return commands

@@ -27,6 +27,9 @@ constexpr std::array kTables = {
 constexpr std::array kPhrases = {kOwnMark, "<Manufacturer>Trilobe</Manufacturer>"sv,
                                  ": a model of Trilobe, for "sv, "found by trilobe "sv};
 
+// The same of a plan for people, whose first column is as wide as its names are long.
+constexpr std::string_view kPlanBegins = "material ", kPlanColumns = " lobes   stored  of full ";
+
 bool Has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
@@ -96,6 +99,9 @@ bool SaysOwn(std::string_view bytes) {
   if (BeginsWithTag(bytes)) return IsOwnPage(bytes);
   if (bytes.starts_with("tensor_file"))
     return Has(bytes, "fitted by Trilobe") || Has(bytes, "that Trilobe fitted");
+  if (bytes.starts_with(kPlanBegins) && Has(bytes.substr(0, bytes.find('\n')), kPlanColumns)) {
+    return true;
+  }
   if (std::ranges::any_of(kTables, [&](auto head) { return bytes.starts_with(head); })) return true;
   const std::string_view head = bytes.substr(0, kHead),
                          tail = bytes.substr(bytes.size() - std::min(kTail, bytes.size()));
