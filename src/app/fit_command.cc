@@ -59,7 +59,7 @@ int RunFitOfOne(const std::string& source) {
   if (!out.empty()) {
     std::vector<std::string> inputs = settings.inputs;
     inputs.push_back(source);
-    folder.emplace(out, FitFileNames(), FitFolderMarks(), Inputs(inputs));
+    folder.emplace(out, FitFileNames(), Inputs(inputs));
   }
   ResultFolder* const into = folder ? &*folder : nullptr;
   const int threads = ThreadsFromFlags();

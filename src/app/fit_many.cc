@@ -133,9 +133,9 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   for (const size_t k : JobsOfShard(all.size())) outcomes.push_back(all[k]);
   std::vector<ResultFolder> folders;
   for (const FitOutcome& outcome : outcomes) {
-    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), FitFolderMarks(), inputs);
+    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), inputs);
   }
-  const ResultFolder summary(out, {kTableName, kPageName}, {kTableName, kPageName}, inputs);
+  const ResultFolder summary(out, {kTableName, kPageName}, inputs);
   summary.Open();
 
   const InterruptGuard guard;

@@ -54,9 +54,6 @@ struct FitSettings {
 // Names of all files that a fit may write into its folder.
 const std::vector<std::string>& FitFileNames();
 
-// Every folder of a fit has at least one of these files.
-const std::vector<std::string>& FitFolderMarks();
-
 // Hash of everything that the result depends on: settings, content of the measurement, version of
 // the program. 32 hexadecimal digits.
 std::string FitKey(const FitSettings& settings, const Source& source);

@@ -28,10 +28,18 @@
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {
-      FitCommand(),     StudyCommand(), SolversCommand(),  FormsCommand(), PlanCommand(),
-      CompareCommand(), ScoreCommand(), PlotCommand(),     InfoCommand(),  ConvertCommand(),
-      SynthCommand(),   ViewCommand(),  MaterialsCommand()};
+  static const std::vector<Command> commands = [] {
+    std::vector<Command> all = {
+        FitCommand(),     StudyCommand(), SolversCommand(),  FormsCommand(), PlanCommand(),
+        CompareCommand(), ScoreCommand(), PlotCommand(),     InfoCommand(),  ConvertCommand(),
+        SynthCommand(),   ViewCommand(),  MaterialsCommand()};
+    // Whatever writes files can be told to overwrite.
+    for (Command& command : all) {
+      const auto out = std::ranges::find(command.flags, "out");
+      if (out != command.flags.end()) command.flags.insert(out + 1, "force");
+    }
+    return all;
+  }();
   return commands;
 }
 

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/command.h"
 #include "app/fit_jobs.h"
@@ -271,6 +272,19 @@ void PrintRun(const StudyJob& job, size_t done, size_t count) {
   std::cout << std::endl;
 }
 
+// Throws Error where the figures may not be written.
+void CheckFigures(const std::vector<StudyJob>& jobs, const std::string& out, const Inputs& inputs) {
+  std::set<std::string> folders;
+  for (const StudyJob& job : jobs) folders.insert(job.folder_of_problem);
+  for (const std::string& folder : folders) {
+    for (const StudyFigure& figure : StudyFigures()) {
+      for (const char* const ending : {".svg", ".pdf"}) {
+        inputs.CheckOutput(out + "/" + folder + "/" + figure.name + ending);
+      }
+    }
+  }
+}
+
 int RunStudy(std::span<const std::string> arguments) {
   const std::string out = FLAGS_out.empty() ? "out/study" : FLAGS_out;
   std::vector<StudyJob> jobs = StudyJobsFromFlags(arguments);
@@ -282,11 +296,12 @@ int RunStudy(std::span<const std::string> arguments) {
   const Inputs inputs(read);
   std::vector<ResultFolder> folders;
   for (const StudyJob& job : jobs) {
-    folders.emplace_back(out + "/" + job.run.folder, FitFileNames(), FitFolderMarks(), inputs);
+    folders.emplace_back(out + "/" + job.run.folder, FitFileNames(), inputs);
   }
   const std::vector<std::string> names(std::begin(kFilesOfStudy), std::end(kFilesOfStudy));
-  const ResultFolder summary(out, names, names, inputs);
-  CheckSameStudy(out, jobs);
+  const ResultFolder summary(out, names, inputs);
+  if (FLAGS_shard.empty()) CheckFigures(jobs, out, inputs);
+  if (!FLAGS_force) CheckSameStudy(out, jobs);
   summary.Open();
   WriteFile(summary.PathOf(kStudyRecordName),
             [&](std::ostream& record) { record << StudyRecord(jobs, CommandText(arguments)); });

@@ -9,6 +9,7 @@
 #include "app/program.h"
 #include "core/base/json_text.h"
 #include "core/files/json_value.h"
+#include "core/files/own_mark.h"
 #include "core/system/content_hash.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
@@ -19,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kFormat = "trilobe.study";
 
 bool Exists(const std::string& path) {
   std::error_code ignored;
@@ -57,8 +56,9 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
   const std::string path = out + "/" + kStudyRecordName;
   if (!Exists(path)) {
     if (!has_tables) return;
-    throw Error("'" + out + "' has tables without " + kStudyRecordName +
-                ", which says of what runs they are; give another --out, or remove that folder");
+    throw Error(
+        "'" + out + "' has tables without " + kStudyRecordName +
+        ", which says of what runs they are; give another --out, or overwrite it by --force");
   }
   std::map<std::string, const StudyJob*> job_of;
   for (const StudyJob& job : jobs) job_of[job.run.folder] = &job;
@@ -66,7 +66,7 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
   bool is_other = false;
   try {
     const Json record = Json::parse(ReadJsonText(path, path + ": not a record of a study"));
-    if (record.at("format") != kFormat) throw Error(path + ": not a record of a study");
+    if (record.at("format") != kStudyFormat) throw Error(path + ": not a record of a study");
     command = record.at("command");
     for (const Json& run : record.at("runs")) {
       const std::string folder = run.at("folder");
@@ -84,7 +84,7 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
   }
   if (!is_other) return;
   throw Error("'" + out + "' has another study, whose results this one would replace: " +
-              Printable(command) + "; give another --out, or remove that folder");
+              Printable(command) + "; give another --out, or overwrite it by --force");
 }
 
 std::string StudyRecord(std::span<const StudyJob> jobs, const std::string& command) {
@@ -92,7 +92,7 @@ std::string StudyRecord(std::span<const StudyJob> jobs, const std::string& comma
   for (const StudyJob& job : jobs) {
     runs.push_back({{"folder", job.run.folder}, {"settings", SettingsOf(job)}});
   }
-  return JsonText(Json{{"format", kFormat},
+  return JsonText(Json{{"format", kStudyFormat},
                        {"program", ProgramName()},
                        {"command", command},
                        {"runs", std::move(runs)}},

@@ -316,6 +316,13 @@ def test_fits_many(tmp_path, monkeypatch):
         trilobe.fit_many([SMALL], tmp_path, program=PROGRAM, noise=-1)
 
 
+def test_names_of_a_batch_are_no_formulas():
+    from trilobe._batch import _cell
+
+    for text, value in {"'=1+1": "=1+1", "''=": "'=", "'-3": "-3", "-3": -3.0, "it's": "it's", "'a": "'a", "": ""}.items():
+        assert _cell(text) == value
+
+
 def test_draws(fitted, plastic, tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("agg")
