@@ -206,7 +206,7 @@ TEST(Study, VerdictOnSeveralProblemsAddsThemUp) {
   EXPECT_THAT(VerdictOn(runs), Contains("Runs within 1 % of the lowest E of its problem: a 3 of "
                                         "4."));
   EXPECT_THAT(VerdictOn(runs), Contains("Their median run gets there, in the geometric mean of the "
-                                        "problems: a after 1 s."));
+                                        "problems: a after 1 s on 1 of 2 problems."));
 }
 
 TEST(Study, TimesOnSeveralProblemsHaveAGeometricMean) {
