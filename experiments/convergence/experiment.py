@@ -1,25 +1,16 @@
 """Convergence: see README.md beside this file."""
-import json
 import math
 
 import numpy
 
 from lab import fits, stats, tables
 from lab.fits import Fit
-from lab.units import Unit
 
 POINTS = 40  # of a curve, at iterations that grow by a constant factor
 
 
 def units(setting):
-    look = setting.manifest["element_by_element"]
-    program = setting.program("monotone")
-    return fits.planned(setting) + [
-        Unit(f"monotone/{source.name}/{solver}", program,
-             (f"--solver={solver}", f"--stride={look['stride']}", f"--sweeps={look['sweeps']}",
-              f"--weighting={look['weighting']}", *fits.words(setting.reading(source)),
-              source.path), labels={"material": source.name, "solver": solver, "run": "elements"})
-        for source in setting.every(look["every"]) for solver in look["solvers"]]
+    return fits.planned(setting)
 
 
 # --- tables ---------------------------------------------------------------------------------------
@@ -78,54 +69,16 @@ def _curve_rows(result, fit, best):
     return rows
 
 
-def _roughness(fit):
-    """Root mean square second difference of the G tables, each over its mean; of whole ones."""
-    model = json.loads((fit.folder / "model.json").read_text())
-    values = []
-    for table, unobserved in zip(model["G"], model.get("unobserved", model.get("dead", {}))
-                                 .get("G", [[]] * len(model["G"]))):
-        table = numpy.asarray(table, dtype=float)
-        if unobserved or table.mean() == 0:
-            continue
-        values.append(numpy.diff(table / table.mean(), 2) ** 2)
-    return math.sqrt(numpy.mean(values)) if values else math.nan
-
-
-def _filter_row(result, fit):
-    rises = [(after["objective"] - before["objective"]) / before["objective"]
-             for before, after in zip(fit.trace, fit.trace[1:])
-             if after["objective"] > before["objective"] > 0]
-    return {"material": result.labels["material"],
-            "filter_deg": fit.report["options"]["given"]["g_filter_sigma"],
-            "sweeps": fit.report["iterations"], "best_sweep": fit.report["best_iteration"],
-            "sweeps_that_raised_E": len(rises), "worst_rise": max(rises, default=0.0),
-            # Of the sweeps: the report's E is that after entries at the edge of the data are tied.
-            "objective": min(row["objective"] for row in fit.trace),
-            "last_objective": fit.trace[-1]["objective"],
-            "psnr_db": fit.report["psnr_db"], "mean_log_error": fit.report["mean_log_error"],
-            "G_roughness": _roughness(fit)}
-
-
 def tabulate(setting, results):
-    there = [result for result in results if result.folder]
-    of_run = {}
-    for result in there:
-        of_run.setdefault(result.labels["run"], []).append(result)
-    solver_fits = [(result, Fit(result.folder, fits.clock(setting)))
-                   for result in of_run.get("solvers", [])]
+    solver_fits = [(result, Fit(result.folder, fits.clock(setting))) for result in results if result.folder]
     best = {}
     for result, fit in solver_fits:
         name = result.labels["material"]
         best[name] = min(best.get(name, math.inf), fit.report["objective"])
     curves = [row for result, fit in solver_fits
               for row in _curve_rows(result, fit, best[result.labels["material"]])]
-    elements = [{"material": result.labels["material"],
-                 **json.loads((result.folder / "stdout.txt").read_text())}
-                for result in of_run.get("elements", [])]
     return {"solvers": [_solver_row(result, fit) for result, fit in solver_fits],
-            "curves": curves, "elements": elements,
-            "filter": [_filter_row(result, Fit(result.folder))
-                       for result in of_run.get("filter", [])],
+            "curves": curves,
             "missing": [{**{key: result.labels[key] for key in ("material", "solver", "run")},
                          "unit": result.unit.path} for result in results if not result.folder]}
 
@@ -168,60 +121,11 @@ def _curves_figure(curves):
     return figure
 
 
-def _elements_figure(elements):
-    """The worst relative rise of each material, sorted."""
-    from lab import plots
-    figure, axes = plots.plt.subplots(figsize=(8, 4))
-    for solver, rows in tables.groups(elements, "solver").items():
-        worst = sorted(max(row["worst_relative_rise"], 1e-17) for row in rows)
-        axes.plot(range(1, len(worst) + 1), worst, "o", markersize=4, label=solver,
-                  color=plots.solver_style(solver)["color"])
-    axes.axhline(numpy.finfo(float).eps, color=plots.GREY, linewidth=1)
-    axes.annotate("rounding of one double", (1, numpy.finfo(float).eps * 1.3), fontsize=9,
-                  color="#555555")
-    axes.set(yscale="log", ylim=(1e-17, 1e-9), xlabel="materials, sorted",
-             ylabel="worst relative rise of E in one update",
-             title="The worst rise of each material, a dot each (1e-17: none at all)")
-    plots.label_ends(axes)
-    return figure
-
-
-def _filter_figure(rows):
-    """What the filter costs in E and buys in smoothness, a line a material."""
-    from lab import plots
-    figure, panels = plots.plt.subplots(1, 2, figsize=(11, 4.6))
-    widths = sorted({row["filter_deg"] for row in rows})
-    at = {(row["material"], row["filter_deg"]): row for row in rows}
-    names = sorted({row["material"] for row in rows if (row["material"], 0) in at})
-    for axes, column, label in ((panels[0], "objective", "lowest E over that without filter"),
-                                (panels[1], "G_roughness",
-                                 "roughness of G over that without filter")):
-        for k, name in enumerate(names):
-            shown = [w for w in widths if (name, w) in at]
-            base = at[name, 0][column]
-            if base is None or math.isnan(base):  # no G table that data touch everywhere
-                continue
-            axes.plot(shown, [stats.ratio(at[name, w][column], base) for w in shown], marker="o",
-                      label=name, color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
-                      linestyle="-" if k < len(plots.SERIES) else "--")
-        axes.set(yscale="log", title=label,
-                 xlabel="standard deviation of the filter on G (degrees)")
-        axes.set_xticks(widths)
-        plots.plain_numbers(axes.yaxis)
-        plots.label_ends(axes, spacing=0.06)
-    return figure
-
-
-def _by_solver(rows, missing, run):
-    """{solver: (its rows, how many of its fits are missing)}"""
-    return tables.with_missing(rows, [row for row in missing if row["run"] == run], "solver")
-
-
 def _solver_table(rows, missing):
     header = ["solver", "n", "iterations", "s an iteration", "factor an iteration", "order",
               "last decrease of E", "optimality at the end", "steps taken back"]
     lines = []
-    for solver, (of, lost) in _by_solver(rows, missing, "solvers").items():
+    for solver, (of, lost) in tables.with_missing(rows, missing, "solver").items():
         lines.append([solver, tables.count(len(of) + lost, lost),
                       *(tables.quartiles([row[column] for row in of])
                         for column in ("iterations", "seconds_an_iteration", "factor", "order",
@@ -229,53 +133,10 @@ def _solver_table(rows, missing):
     return tables.markdown(header, lines)
 
 
-def _elements_table(rows, missing):
-    lines = []
-    for solver, (of, lost) in _by_solver(rows, missing, "elements").items():
-        if not of:
-            lines.append([solver, tables.count(lost, lost), *["–"] * 4])
-            continue
-        worst = max(of, key=lambda row: row["worst_relative_rise"])
-        lines.append([solver, tables.count(len(of) + lost, lost),
-                      f"{sum(row['updates'] for row in of):,}",
-                      f"{sum(row['raised'] for row in of):,}",
-                      f"**{worst['worst_relative_rise']:.2g}**", worst["material"]])
-    return tables.markdown(["solver", "materials", "updates", "that raised E at all",
-                            "worst relative rise", "on"], lines)
-
-
-def _filter_table(rows):
-    at = {(row["material"], row["filter_deg"]): row for row in rows}
-    lines = []
-    for width in sorted({row["filter_deg"] for row in rows if row["filter_deg"] > 0}):
-        pairs = [(at[name, 0], row) for (name, w), row in at.items()
-                 if w == width and (name, 0) in at]
-        lines.append([f"{width:g}", str(len(pairs)),
-                      tables.quartiles([row["sweeps_that_raised_E"] / row["sweeps"] * 100
-                                  for _, row in pairs]),
-                      tables.quartiles([100 * row["worst_rise"] for _, row in pairs]),
-                      tables.quartiles([stats.ratio(row["objective"], plain["objective"])
-                                        for plain, row in pairs]),
-                      tables.quartiles([stats.ratio(row["last_objective"], row["objective"])
-                                        for _, row in pairs]),
-                      tables.quartiles([plain["psnr_db"] - row["psnr_db"] for plain, row in pairs]),
-                      tables.quartiles([row["G_roughness"] / plain["G_roughness"]
-                                  for plain, row in pairs])])
-    return tables.markdown(["filter, degrees", "n", "sweeps that raised E, %", "worst rise, %",
-                            "lowest E over that without", "last E over lowest", "PSNR lost, dB",
-                            "roughness of G over that without"], lines)
-
-
 def draw(drawn, _):
     products = {}
     if drawn["solvers"]:
         products["solvers.md"] = _solver_table(drawn["solvers"], drawn["missing"])
+    if drawn["curves"]:
         products["curves"] = _curves_figure(drawn["curves"])
-    if drawn["elements"]:
-        products["elements.md"] = _elements_table(drawn["elements"], drawn["missing"])
-        if any(row["raised"] for row in drawn["elements"]):  # else there is nothing to see
-            products["elements"] = _elements_figure(drawn["elements"])
-    if drawn["filter"]:
-        products["filter.md"] = _filter_table(drawn["filter"])
-        products["filter"] = _filter_figure(drawn["filter"])
     return products

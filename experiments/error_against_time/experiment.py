@@ -196,7 +196,7 @@ def _median_figure(curves, rows, solvers, threads):
                     continue
                 values = [row[column] * factor for row in group if row[column] is not None]
                 values += [math.inf] * (len(names) - len(values))  # not begun, or missing
-                quartiles = [stats.quantile(values, q) for q in (.25, .5, .75)]
+                quartiles = stats.spread(values, .25)
                 if math.isfinite(quartiles[1]):
                     points.append((seconds, *quartiles))
             if not points:

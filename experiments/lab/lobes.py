@@ -1,8 +1,8 @@
-"""Lobes of fitted models: read, compared, matched between runs, and their share of the light."""
-import functools
+"""Lobes of fitted models: read, compared, matched between runs."""
 import itertools
 import json
 import math
+import subprocess
 
 import numpy
 
@@ -73,7 +73,7 @@ def congruence(a, b, weights=1.0):
 
 
 def scores(a, b):
-    """The factor match score of every lobe of a with every lobe of b. [a.lobes][b.lobes]
+    """How alike every lobe of a and every lobe of b are in shape, whatever their strength. [a.lobes][b.lobes]
 
     It is the product of the congruences of D, weighted by the projected solid angle of its bins,
     of G and of s: 1 for lobes that differ in scale alone, 0 for lobes that have nothing in common
@@ -96,44 +96,9 @@ def assign(table):
                key=lambda columns: sum(table[row][column] for row, column in zip(rows, columns)))
 
 
-def likest_pair(model):
-    """The largest match score of two lobes of one model; 0 with fewer than two."""
-    own = scores(model, model)
-    return max((own[m, n] for m in range(model.lobes) for n in range(m)), default=0.0)
-
-
-@functools.lru_cache(maxsize=4)
-def _hemispheres(d_bins, f_bins, phi_steps):
-    """theta_i and theta_o in degrees at the middle of the cells of (theta_h, theta_d, phi_d), and
-    the measure of each cell. [d_bins][f_bins][phi_steps] each"""
-    edges = _edges(d_bins)
-    theta_h = (numpy.arange(d_bins) + 0.5) ** 2 / d_bins ** 2 * (math.pi / 2)
-    theta_d = (numpy.arange(f_bins) + 0.5) / f_bins * (math.pi / 2)
-    phi_d = (numpy.arange(phi_steps) + 0.5) / phi_steps * (math.pi / 2)  # the rest by symmetry
-    h, d, p = numpy.meshgrid(theta_h, theta_d, phi_d, indexing="ij")
-    up = numpy.cos(h) * numpy.cos(d)
-    across = numpy.sin(h) * numpy.sin(d) * numpy.cos(p)
-    cosines = up - across, up + across
-    angles = [numpy.degrees(numpy.arccos(numpy.clip(cosine, -1, 1))) for cosine in cosines]
-    # d omega_i d omega_o = 4 cos(theta_d) d omega_h d omega_d, each d omega over its full circle.
-    measure = (4 * (2 * math.pi) ** 2 / phi_steps * -numpy.diff(numpy.cos(edges))[:, None, None]
-               * numpy.sin(d) * numpy.cos(d) * (math.pi / 2 / f_bins))
-    return *angles, numpy.where(cosines[0] > 0, measure, 0.0)
-
-
-def albedos(model, phi_steps=30):
-    """What a white sky lets the lobes and the diffuse part reflect, mean of the channels.
-    [lobes + 1], the diffuse part last.
-
-    The bihemispherical albedo: 1/pi times the integral of rho cos(theta_i) cos(theta_o) over both
-    hemispheres. In it the cosines of the model cancel: s D F G G is left, by the midpoint rule in
-    theta_h, theta_d and phi_d.
-    """
-    theta_i, theta_o, measure = _hemispheres(model.D.shape[1], model.F.shape[1], phi_steps)
-    nodes = (numpy.arange(model.G.shape[1]) + 0.5) * 90 / model.G.shape[1]
-    result = []
-    for m in range(model.lobes):
-        G = numpy.interp(theta_i, nodes, model.G[m]) * numpy.interp(theta_o, nodes, model.G[m])
-        light = model.D[m] @ (measure * G).sum(axis=2) @ model.F.T  # [3]
-        result.append(float(numpy.mean(model.s[m] * light)) / math.pi)
-    return numpy.array([*result, math.pi * float(numpy.mean(model.d))])
+def matches(program, reference, paths):
+    """Whether models have the lobes of the reference, by the program match_lobes, which compares them as `trilobe
+    study` does (docs/study.md). A dict for each of the paths, as it prints them."""
+    printed = subprocess.run([program, reference], input="".join(f"{path}\n" for path in paths), check=True,
+                             stdout=subprocess.PIPE, text=True).stdout
+    return [json.loads(line) for line in printed.splitlines()]

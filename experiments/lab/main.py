@@ -1,5 +1,6 @@
 """The command `trilobe-experiments`."""
 import argparse
+import collections
 import json
 import os
 import pathlib
@@ -104,9 +105,10 @@ def setting_of(experiment, options):
 
 
 def draw(experiment, folder):
-    """Draws all pictures and texts into the folder, from the tables there."""
+    """Draws pictures and texts into the folder, from the tables there. One that is not there, as bulk ones are not
+    in published results, is taken for empty, and what shows it is left as it is."""
     from lab import plots  # here: it takes a second to load
-    of_name = {path.stem: tables.read(path) for path in sorted(folder.glob("*.csv"))}
+    of_name = collections.defaultdict(list, {path.stem: tables.read(path) for path in sorted(folder.glob("*.csv"))})
     if not of_name:
         raise UsageError(f"{folder} holds no tables; run the experiment first")
     for name, content in experiment.module.draw(of_name, folder).items():

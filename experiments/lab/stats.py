@@ -16,7 +16,14 @@ def quantile(values, q):
 
 
 def median(values):
-    return quantile(values, 0.5)
+    """The middle value, of an even number the mean of the two in the middle; nan of none. It is infinite where one of
+    the two is: not more than half of the runs have got there."""
+    return statistics.median(values) if len(values) else math.nan
+
+
+def spread(values, outside):
+    """(low, median, high): a share `outside` of the values lies beyond either end; all nan of none."""
+    return quantile(values, outside), median(values), quantile(values, 1 - outside)
 
 
 def geometric_mean(values):

@@ -60,8 +60,7 @@ def quartiles(values, form=".3g"):
     told; – for what is infinite."""
     from lab import stats  # here: it needs numpy, without which the experiments can be listed
     known = [value for value in values if value is not None and not math.isnan(value)]
-    low, middle, high = (format(value, form) if math.isfinite(value) else "–"
-                         for value in (stats.quantile(known, q) for q in (.25, .5, .75)))
+    low, middle, high = (format(value, form) if math.isfinite(value) else "–" for value in stats.spread(known, .25))
     of = f" (n = {len(known)})" if 0 < len(known) < len(values) else ""
     return "–" if middle == "–" else f"{middle} [{low}, {high}]{of}"
 

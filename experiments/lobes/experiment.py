@@ -1,7 +1,7 @@
 """Stability of the lobes: see README.md beside this file."""
+import itertools
 import json
 import math
-import pathlib
 import statistics
 
 import numpy
@@ -10,33 +10,40 @@ from lab import fits, lobes, records, stats, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
-SUCCESS = 0.01  # of E above the best: as good
+SUCCESS = 0.01  # of E above the lowest: as good
 COLLAPSED = 1e-4  # of the reflected light: less is no lobe
-COPY = 0.99  # match score of two lobes of one model
+COPY = 0.99  # how alike two lobes of one model are
 BLOWN_UP = 2.0  # times what the reference reflects
-AGREEING = 0.9  # match score of the least alike of a run's lobes
-STABLE = 0.9  # of a material's runs agree
+SAME = 0.9  # agreement of lobes that are the same
+STABLE = 0.9  # of a material's runs have the same
+STARTS, CLEAN, NOISE = "starts", "noise-free", "noise"
 
 
-def _noisy_fits(setting):
-    """Fits to noisy copies, and the fit without noise that they are compared with."""
-    asked = setting.manifest["noise"]
+def _thinned(setting):
+    """Fits to fewer samples: from random starts, and from the given one to noisy copies and without noise."""
+    asked = setting.manifest["thinned"]
     if asked is None:
         return []
-    flags = {**setting.manifest["flags"], **asked["flags"]}
-    units = []
-    for source in setting.every(asked.get("every", 1)):
-        plain = fits.fit(setting, source, asked["solver"], flags,
-                         weighting=asked.get("weighting", fits.DEFAULT), run="noise-free")
-        units.append(plain)
-        words = [word for word in plain.arguments[3:]
-                 if not word.startswith(("--noise=", "--seed="))]
-        for draw in range(1, asked["draws"] + 1):
-            units.append(Unit(
-                f"fit/{source.name}/{asked['solver']}-noisy",
-                pathlib.Path(__file__).with_name("noisy_fit"),
-                (str(setting.program()), source.path, str(asked["sigma"]), str(draw), FOLDER,
-                 *words), "report.json", labels={**plain.labels, "seed": draw, "run": "noise"}))
+    program, step = setting.program("thinned_fits"), asked["starts_a_unit"]
+    starts = {solver: of.get("starts", asked["starts"]) for solver, of in asked["solvers"].items()}
+
+    def unit(source, solver, name, run, flags, **labels):
+        own = {flag: value for flag, value in asked["solvers"][solver].items() if flag != "starts"}
+        given = {"solvers": solver, "lights": asked["lights"], "models": FOLDER, **own,
+                 **setting.reading(source), **flags}
+        return Unit(f"lobes/{source.name}/{solver}-{name}", program, (source.path, *fits.words(given)),
+                    labels={"material": source.name, "solver": solver, "run": run, **labels})
+    sources, noise, units = setting.every(asked["every"]), asked["noise"], []
+    for first, source, solver in itertools.product(range(1, max(starts.values()) + 1, step), sources, starts):
+        if first <= starts[solver]:
+            units.append(unit(source, solver, f"from-{first}", STARTS,
+                              {"init": "random", "first_start": first,
+                               "starts": min(step, starts[solver] + 1 - first)}))
+    for source, solver in itertools.product(sources, starts):
+        units.append(unit(source, solver, "clean", CLEAN, {"init": "analytic"}))
+        units += [unit(source, solver, f"noise-{draw}", NOISE,
+                       {"init": "analytic", "corrupt": f"noise:{noise['sigma']}", "data_seed": draw}, seed=draw)
+                  for draw in range(1, noise["draws"] + 1)]
     return units
 
 
@@ -54,105 +61,97 @@ def units(setting):
              labels={**unit.labels, "run": "spectrum"})
         for unit in fitted if unit.labels["run"] == "lobes"
         and unit.labels["seed"] == min(of.labels["seed"] for of in fitted)]
-    return fitted + _noisy_fits(setting) + spectra
+    return _thinned(setting) + fitted + spectra
 
 
 # --- tables ---------------------------------------------------------------------------------------
 
 
-def _reported_albedos(light):
-    """As lobes.albedos, from the member "light" of a report."""
-    return numpy.array([numpy.mean(part["albedo"]) for part in (*light["lobes"], light["diffuse"])])
-
-
 class _Run:
-    """A fit, its model and its lobes' albedos."""
+    """A fit: what is said of it, and where its model lies."""
 
-    def __init__(self, result, clock):
-        self.labels = result.labels
-        self.key = result.unit.key
-        fit = Fit(result.folder, clock)
-        self.report = fit.report
-        self.seconds = fit.solved
-        self.model = lobes.Model.read(result.folder / "model.json")
-        self.albedos = (lobes.albedos(self.model) if self.report["model"] != "anisotropic"
-                        else _reported_albedos(self.report["light"]))
-        self.order = None  # its lobes in the order of the reference's
+    def __init__(self, labels, path, told):
+        self.labels, self.path, self.told = labels, path, told
+        self.objective = told["objective"]
+        self.lobes = json.loads(path.read_text())["lobes"]
+        self.match = None  # with the reference
+        self.own_agreement = None  # with its solver's run of the lowest E
 
     @property
     def group(self):
-        """Runs that should have the same lobes, and are compared with one of them."""
-        run = self.labels["run"]
-        return self.labels["material"], run.replace("noise-free", "noise"), self.model.lobes
-
-    def compare(self, reference):
-        """Sets the order. Returns the match scores, lobe by lobe of the reference's by size."""
-        by_size = numpy.argsort(-reference.albedos[:-1], kind="stable")
-        table = lobes.scores(reference.model, self.model)[by_size]
-        self.order = lobes.assign(table)
-        self.swapped = tuple(by_size) != self.order
-        return [table[row, column] for row, column in enumerate(self.order)]
+        """Runs whose lobes are compared: each noisy fit with its solver's own without noise."""
+        run, solver = self.labels["run"], self.labels["solver"]
+        noise = run in (CLEAN, NOISE)
+        return self.labels["material"], NOISE if noise else run, self.lobes, solver if noise else None
 
 
-def _references(runs):
-    """{group: the run of the lowest E of the seeded ones, or the one without noise}"""
-    references = {}
+def _runs_of(result, clock):
+    """The runs of a unit: one of `trilobe fit`, many of thinned_fits."""
+    if (result.folder / "report.json").exists():
+        fit = Fit(result.folder, clock)
+        diagnosis = fit.report["diagnosis"] or {}
+        return [_Run(result.labels, result.folder / "model.json", {
+            "objective": fit.report["objective"], "seconds": fit.solved,
+            "psnr_db": (fit.report.get("appearance") or {}).get("psnr_db"),
+            "over_record": records.excess(fit.report["objective"], fit.report, result.labels["material"]),
+            **{name: fit.report[name] for name in ("stop_reason", "iterations")},
+            **{name: diagnosis.get(name) for name in ("optimality", "rank", "condition", "unresolved")}})]
+    runs = []
+    for line in (result.folder / "stdout.txt").read_text().splitlines():
+        told = json.loads(line)
+        runs.append(_Run({**result.labels, "seed": result.labels.get("seed", told["seed"])},
+                         result.folder / f"{told['solver']}-{told['seed']}.json",
+                         {"objective": told["E"], **{name: told[name] for name in (
+                             "seconds", "psnr_db", "stop_reason", "iterations", "optimality")}}))
+    return runs
+
+
+def _lowest(runs):
+    return min(runs, key=lambda run: run.objective)
+
+
+def _compare(setting, runs):
+    """Matches each run with the reference of its group. Returns {group: reference}."""
+    program, references = setting.program("match_lobes"), {}
+    groups = {}
     for run in runs:
-        if run.labels["run"] == "noise":
+        groups.setdefault(run.group, []).append(run)
+    for group, of in groups.items():
+        clean = [run for run in of if run.labels["run"] == CLEAN]
+        if group[1] == NOISE and not clean:
             continue
-        best = references.setdefault(run.group, run)
-        if run.report["objective"] < best.report["objective"]:
-            references[run.group] = run
+        references[group] = reference = _lowest(clean or of)
+        for run, match in zip(of, lobes.matches(program, reference.path, [run.path for run in of])):
+            run.match = match
+        if group[1] == NOISE:
+            continue
+        for solver in {run.labels["solver"] for run in of}:
+            own = [run for run in of if run.labels["solver"] == solver]
+            best = _lowest(own)
+            for run, match in zip(own, lobes.matches(program, best.path, [run.path for run in own])):
+                run.own_agreement = None if run is best else match["agreement"]
     return references
 
 
 def _row(run, reference):
-    report, labels = run.report, run.labels
-    matches = run.compare(reference)
-    total = float(run.albedos.sum())
-    shares = run.albedos / total if total > 0 else run.albedos
-    diagnosis = report["diagnosis"] or {}
+    light = numpy.array(run.match["light"])
+    total = float(light.sum())
+    shares = light / total if total > 0 else light
+    told, labels = run.told, run.labels
     return {
         "run": labels["run"], "material": labels["material"], "solver": labels["solver"],
-        "lobes": run.model.lobes, "seed": labels["seed"], "objective": report["objective"],
+        "lobes": run.lobes, "seed": labels["seed"], "objective": run.objective,
+        "over_record": told.get("over_record"),
         # Under noise E is mostly noise, which a model must not follow.
-        "over_record": records.excess(report["objective"], report, labels["material"]),
-        "excess": (stats.excess(report["objective"], reference.report["objective"])
-                   if run.group[1] != "noise" else None),
-        "seconds": run.seconds,
-        "stop_reason": report["stop_reason"], "iterations": report["iterations"],
-        "reference": int(run.key == reference.key), "least_match": min(matches, default=1.0),
-        "light_match": float(numpy.average(matches, weights=shares[list(run.order)]))
-        if sum(shares[list(run.order)]) > 0 else None,
-        "swapped": int(run.swapped), "collapsed": int((shares[:-1] < COLLAPSED).any()),
-        "likest_pair": lobes.likest_pair(run.model),
-        "albedo": total, "albedo_over_reference": total / float(reference.albedos.sum()),
-        **{f"share_{k + 1}": float(shares[m]) for k, m in enumerate(run.order)},
-        "share_diffuse": float(shares[-1]),
-        "psnr_db": (report.get("appearance") or {}).get("psnr_db"),
-        **{name: diagnosis.get(name) for name in ("rank", "condition", "unresolved")}}
-
-
-def _bands(runs, reference):
-    """Spread of each table entry over runs; lobes as numbered by the reference."""
-    rows = []
-    for factor in "DFG":
-        orders = [range(lobes.CHANNELS) if factor == "F" else run.order for run in runs]
-        # [runs][tables][entries]
-        values = numpy.array([getattr(run.model, factor)[list(order)]
-                              for run, order in zip(runs, orders)])
-        observed = numpy.array([run.model.observed[factor][list(order)]
-                                for run, order in zip(runs, orders)]).all(axis=0)
-        of_reference = getattr(reference.model, factor)
-        if factor != "F":
-            of_reference = of_reference[list(reference.order)]
-        for table, entry in zip(*numpy.nonzero(observed)):
-            of = values[:, table, entry]
-            low, middle, high = (float(f"{stats.quantile(of, q):.4g}") for q in (.05, .5, .95))
-            rows.append({"factor": factor, "table": int(table) + 1, "entry": int(entry),
-                         "runs": len(runs), "low": low, "median": middle, "high": high,
-                         "reference": float(f"{of_reference[table, entry]:.4g}")})
-    return rows
+        "excess": stats.excess(run.objective, reference.objective) if run.group[1] != NOISE else None,
+        "optimality": told["optimality"], "stop_reason": told["stop_reason"], "iterations": told["iterations"],
+        "seconds": told["seconds"], "reference": int(run is reference), "agreement": run.match["agreement"],
+        "own_agreement": run.own_agreement, "least_match": min(run.match["match"], default=1.0),
+        "collapsed": int((shares[:-1] < COLLAPSED).any()), "likest_pair": run.match["likest_pair"],
+        "albedo": total, "albedo_over_reference": total / sum(reference.match["light"]),
+        **{f"share_{k + 1}": float(shares[m]) for k, m in enumerate(run.match["lobe"])},
+        "share_diffuse": float(shares[-1]), "psnr_db": told["psnr_db"],
+        **{name: told.get(name) for name in ("rank", "condition", "unresolved")}}
 
 
 def _part_name(part, order):
@@ -181,26 +180,20 @@ def _weakest(spectrum, order):
 
 
 def tabulate(setting, results):
-    runs = [_Run(result, fits.clock(setting)) for result in results
-            if result.folder and result.labels["run"] != "spectrum"]
-    references = _references(runs)
+    clock = fits.clock(setting)
+    runs = [run for result in results if result.folder and result.labels["run"] != "spectrum"
+            for run in _runs_of(result, clock)]
+    references = _compare(setting, runs)
     compared = [run for run in runs if run.group in references]
     rows = [_row(run, references[run.group]) for run in compared]
-    shown = setting.manifest["shown"]
-    bands = []
-    for group, reference in references.items():
-        material, kind, _ = group
-        of = [run for run in compared if run.group == group and run.labels["run"] == kind
-              and (kind == "noise" or run.labels["solver"] == shown["solver"])]
-        if of and kind != "lobes" and material in shown.get("materials", [material]):
-            bands += [{"run": kind, "material": material, **row} for row in _bands(of, reference)]
-    order_of = {run.key: run.order for run in compared if run.labels["run"] == "lobes"}
+    order_of = {run.path.parent: run.match["lobe"] for run in compared if run.labels["run"] == "lobes"}
+    folder_of = {result.unit.key: result.folder for result in results}
     spectra, weakest = [], []
     for result in results:
         if not result.folder or result.labels["run"] != "spectrum":
             continue
         spectrum = json.loads((result.folder / "stdout.txt").read_text())
-        order = order_of[result.unit.needs[0].key]
+        order = order_of[folder_of[result.unit.needs[0].key]]
         labels = {"material": result.labels["material"], "lobes": len(order)}
         values = spectrum["singular_values"]
         spectra += [{**labels, "number": k + 1, "relative_singular_value": value / values[0],
@@ -208,55 +201,12 @@ def tabulate(setting, results):
                      "gauge_directions": spectrum["gauge_directions"]}
                     for k, value in enumerate(values)]
         weakest += [{**labels, **row} for row in _weakest(spectrum, order)]
-    missing = [{**{key: result.labels[key] for key in ("run", "material", "solver", "seed")},
-                "unit": result.unit.path} for result in results if not result.folder]
-    return {"runs": rows, "bands": bands, "spectra": spectra, "weakest": weakest,
-            "missing": missing}
+    missing = [{**{key: result.labels[key] for key in ("run", "material", "solver")}, "unit": result.unit.path}
+               for result in results if not result.folder]
+    return {"runs": rows, "spectra": spectra, "weakest": weakest, "missing": missing}
 
 
 # --- pictures -------------------------------------------------------------------------------------
-
-
-def _bands_figure(rows, title):
-    """Rows of panels: materials. Columns: D and G of each lobe, F of each channel."""
-    from lab import plots
-    by_material = tables.groups(rows, "material")
-    lobe_colours = (plots.BLUE, plots.ORANGE, plots.PURPLE, plots.GREEN, plots.BLACK)
-    channel_colours = (plots.VERMILION, plots.GREEN, plots.BLUE)
-    columns = (("D", "D against θh (degrees)", lobe_colours, "lobe {}"),
-               ("F", "F against θd (degrees)", channel_colours, "{}"),
-               ("G", "G against θi and θo (degrees)", lobe_colours, "lobe {}"))
-    figure, panels = plots.plt.subplots(len(by_material), 3, squeeze=False,
-                                        figsize=(12.5, 2.9 * len(by_material) + 0.7))
-    for line, (material, of_material) in zip(panels, by_material.items()):
-        for axes, (factor, label, colours, name) in zip(line, columns):
-            of_factor = [row for row in of_material if row["factor"] == factor]
-            for table, of in tables.groups(of_factor, "table").items():
-                entries = numpy.array([row["entry"] for row in of])
-                x = (entries + 0.5) ** 2 / 90 if factor == "D" else entries + 0.5
-                low, middle, high, best = (numpy.array([row[column] for row in of]) for column in
-                                           ("low", "median", "high", "reference"))
-                colour = colours[table - 1]
-                which = ("red", "green", "blue")[table - 1] if factor == "F" else table
-                axes.fill_between(x, low, high, color=colour, alpha=0.25, linewidth=0)
-                axes.plot(x, middle, color=colour, linewidth=1.5, label=name.format(which))
-                axes.plot(x, best, color=colour, linewidth=1, linestyle=":")
-            if factor == "D":
-                top = max(row["high"] for row in of_factor)
-                axes.set(xscale="log", yscale="log", ylim=(1e-6 * top, 2 * top))
-                plots.plain_numbers(axes.xaxis)
-                axes.set_ylabel(material, fontsize=10)
-            elif factor == "F":
-                top = max(row["high"] for row in of_factor)
-                axes.set(yscale="log", ylim=(1e-4 * top, 2 * top))
-            else:
-                axes.set_ylim(bottom=0)
-            axes.set_xlabel(label)
-            axes.legend(fontsize=8)
-    runs = {row["runs"] for row in rows}
-    figure.suptitle(f"{title}: 5 to 95 % of {min(runs)} runs (band), median (line), reference "
-                    "(dotted)", x=0.01, ha="left")
-    return figure
 
 
 def _shares_figure(rows):
@@ -296,28 +246,23 @@ def _shares_figure(rows):
 
 
 def _stability_figure(rows):
-    """A line a material: the least match and E of each run of the solver shown, and noise."""
+    """A line a material and solver: the agreement of the lobes, E and what one sees of each run."""
     from lab import plots
-    kinds = {"starts": (plots.BLUE, "another seed"), "noise": (plots.ORANGE, "noise")}
-    kinds = {kind: of for kind, of in kinds.items() if any(row["run"] == kind for row in rows)}
-    by_material = tables.groups([row for row in rows if not row["reference"]], "material")
-    names = sorted(by_material, key=lambda name: stats.median(
-        [row["least_match"] for row in by_material[name]]))
-    figure, panels = plots.plt.subplots(1, 3, sharey=True,
-                                        figsize=(13, 0.42 * len(names) + 1.6))
+    solvers = list(dict.fromkeys(row["solver"] for row in rows))
+    by_material = tables.groups(rows, "material")
+    names = sorted(by_material, key=lambda name: stats.median([row["agreement"] for row in by_material[name]]))
+    figure, panels = plots.plt.subplots(1, 3, sharey=True, figsize=(13, (0.2 + 0.17 * len(solvers)) * len(names) + 1.4))
     for y, name in enumerate(names):
-        for k, (kind, (colour, label)) in enumerate(kinds.items()):
-            of = [row for row in by_material[name] if row["run"] == kind]
-            heights = y + 0.18 * (1 - 2 * k) + 0.14 * (numpy.linspace(-1, 1, len(of))
-                                                      if len(of) > 1 else numpy.zeros(len(of)))
-            style = {"color": colour, "markersize": 4, "alpha": 0.75, "linestyle": "",
-                     "marker": "o", "label": label if y == 0 else "_"}
-            panels[0].plot([row["least_match"] for row in of], heights, **style)
-            if kind == "starts":
-                panels[1].plot([100 * max(row["excess"], 1e-6) for row in of], heights, **style)
-                panels[2].plot([row["psnr_db"] for row in of], heights, **style)
-    panels[0].axvline(AGREEING, color=plots.GREY, linewidth=1)
-    panels[0].set(xlim=(-0.03, 1.03), xlabel="match of the least alike lobe (1: the same)")
+        for k, solver in enumerate(solvers):
+            of = [row for row in by_material[name] if row["solver"] == solver]
+            heights = y + 0.8 * (0.5 - (k + 0.5) / len(solvers)) + 0.12 * numpy.linspace(-1, 1, len(of))
+            style = {"color": plots.solver_style(solver, solvers)["color"], "markersize": 3.5, "alpha": 0.7,
+                     "linestyle": "", "marker": "o", "label": solver if y == 0 else "_"}
+            panels[0].plot([row["agreement"] for row in of], heights, **style)
+            panels[1].plot([100 * max(row["excess"], 1e-6) for row in of], heights, **style)
+            panels[2].plot([row["psnr_db"] for row in of], heights, **style)
+    panels[0].axvline(SAME, color=plots.GREY, linewidth=1)
+    panels[0].set(xlim=(-0.03, 1.03), xlabel="agreement of the lobes with those of the lowest run")
     panels[0].set_yticks(range(len(names)), names)
     panels[1].set(xscale="log", xlabel="E above the lowest (%)")
     plots.plain_numbers(panels[1].xaxis)
@@ -339,7 +284,7 @@ def _lobes_figure(rows):
         most = best[min(best)]
         style = {"color": plots.SERIES[k % len(plots.SERIES)], "marker": "o", "label": material}
         panels[0].plot(list(best), [100 * value / most for value in best.values()], **style)
-        for axes, column in ((panels[1], "objective"), (panels[2], "least_match")):
+        for axes, column in ((panels[1], "objective"), (panels[2], "agreement")):
             middles = []
             for count, of in of_count.items():
                 values = ([100 * stats.excess(row["objective"], best[count]) for row in of]
@@ -353,7 +298,7 @@ def _lobes_figure(rows):
     panels[1].set(title="E of the other runs above the lowest (%)")
     panels[1].set_yscale("symlog", linthresh=0.1)
     panels[1].set_ylim(-0.01, max(1, 2 * panels[1].get_ylim()[1]))
-    panels[2].set(title="least match score of the lobes of another run", ylim=(-0.03, 1.03))
+    panels[2].set(title="agreement of the lobes of another run", ylim=(-0.03, 1.03))
     for axes in panels:
         axes.set_xlabel("lobes")
         axes.set_xticks(sorted({row["lobes"] for row in rows}))
@@ -388,74 +333,71 @@ def _percent(rows, holds):
 
 
 def _range(values, digits=3):
+    values = [value for value in values if value is not None]
     if not values:
         return "–"
-    middle, low, high = (f"{stats.quantile(values, q):.{digits}g}" for q in (.5, .05, .95))
-    return f"{middle} [{low}, {high}]"
+    low, high = (f"{stats.quantile(values, q):.{digits}g}" for q in (.05, .95))
+    return f"{statistics.median(values):.{digits}g} [{low}, {high}]"
 
 
-def _agree(rows):
-    """Of the runs that are not the reference, which agrees with itself, how many do, %."""
-    others = [row for row in rows if not row["reference"]]
-    return _percent(others, lambda row: row["least_match"] >= AGREEING)
+def _same(rows, column="agreement"):
+    """Of the runs beside that which they are compared with, how many have its lobes, %."""
+    others = [row for row in rows if row[column] is not None and not (column == "agreement" and row["reference"])]
+    return _percent(others, lambda row: row[column] >= SAME)
 
 
-def _success_table(rows, missing):
-    """A fit that is missing is no success; what it took is not known."""
-    lines = []
-    missing = [row for row in missing if row["run"] == "starts"]
-    groups = tables.with_missing(rows, missing, "material", "solver")
-    for material, solver in sorted(groups):
-        of, lost = groups[material, solver]
-        if not of:
-            lines.append([material, solver, tables.count(lost, lost), "0", *["–"] * 3, "never"])
-            continue
-        own_best = min(row["objective"] for row in of)
-        rate = sum(row["excess"] <= SUCCESS for row in of) / (len(of) + lost)
-        seconds = statistics.fmean(row["seconds"] for row in of)
-        second = f"{2 * seconds / rate:.1f}" if rate > 0 else "never"
-        lines.append([material, solver, tables.count(len(of) + lost, lost), f"{100 * rate:.0f}",
-                      _percent(of, lambda row: row["objective"] <= (1 + SUCCESS) * own_best),
-                      _range([100 * row["excess"] for row in of]), f"{seconds:.1f}", second])
+def _stops(rows):
+    """Why they stopped: "converged 18, max_iterations 2"."""
+    return ", ".join(f"{reason} {len(of)}" for reason, of in tables.groups(rows, "stop_reason").items())
+
+
+def _materials_with(rows, column):
+    """On how many materials STABLE of the runs have the same lobes."""
+    count = 0
+    for of in tables.groups(rows, "material").values():
+        others = [row for row in of if row[column] is not None and not (column == "agreement" and row["reference"])]
+        count += bool(others) and sum(row[column] >= SAME for row in others) >= STABLE * len(others)
+    return count
+
+
+def _solvers_table(rows):
+    """A line a solver, over all materials."""
     return tables.markdown(
-        ["material", "solver", "runs", "within 1 % of the best, %", "of its own best, %",
-         "E above the best, %", "s a run", "s to the second success"], lines)
+        ["solver", "materials", "runs", "lobes of the lowest run, %", "lobes of its own lowest run, %",
+         "own on 90 % of the starts: materials", "agreement with the lowest", "within 1 % of the lowest E, %",
+         "E above the lowest, %", "scaled gradient", "iterations", "why they stopped", "s a run"],
+        [[solver, str(len({row["material"] for row in of})), str(len(of)), _same(of), _same(of, "own_agreement"),
+          str(_materials_with(of, "own_agreement")), _range([row["agreement"] for row in of], 2),
+          _percent(of, lambda row: row["excess"] <= SUCCESS), _range([100 * row["excess"] for row in of]),
+          _range([row["optimality"] for row in of], 2), _range([row["iterations"] for row in of]), _stops(of),
+          f"{numpy.mean([row['seconds'] for row in of]):.2g}"]
+         for solver, of in tables.groups(rows, "solver").items()])
+
+
+def _noise_table(rows):
+    return tables.markdown(
+        ["solver", "materials", "noisy fits", "lobes of the fit without noise, %",
+         "in all draws: materials", "agreement", "scaled gradient", "why they stopped"],
+        [[solver, str(len({row["material"] for row in of})), str(len(of)), _same(of),
+          str(sum(all(row["agreement"] >= SAME for row in draws)
+                  for draws in tables.groups(of, "material").values())),
+          _range([row["agreement"] for row in of], 2), _range([row["optimality"] for row in of], 2), _stops(of)]
+         for solver, of in tables.groups(rows, "solver").items()])
 
 
 def _stability_table(rows):
-    lines = []
-    rows = sorted(rows, key=lambda row: (row["run"] == "noise", row["material"], row["solver"]))
-    for (run, material, solver), of in tables.groups(rows, "run", "material", "solver").items():
-        others = [row for row in of if not row["reference"]]
-        lines.append([
-            run, material, solver, str(len(of)), _range([row["least_match"] for row in others]),
-            _range([row["light_match"] for row in others if row["light_match"] is not None]),
-            _agree(of),
-            _percent(of, lambda row: row["swapped"]), _percent(of, lambda row: row["collapsed"]),
-            _percent(of, lambda row: row["likest_pair"] > COPY),
-            _percent(of, lambda row: row["albedo_over_reference"] > BLOWN_UP),
-            f"{max(row['albedo_over_reference'] for row in of):.4g}",
-            _range([row["psnr_db"] for row in of if row["psnr_db"] is not None], 4)])
+    """A line a material and solver; shares of the lobes are in the order of the reference's."""
     return tables.markdown(
-        ["runs of", "material", "solver", "n", "least match", "match by light", "agree, %",
-         "swapped, %", "collapsed, %", "copies, %", "blown up, %", "largest albedo",
-         "sphere PSNR, dB"], lines)
-
-
-def _stable_table(rows):
-    """On how many materials the same lobes come back."""
-    lines = []
-    for (run, solver), of in tables.groups(rows, "run", "solver").items():
-        by_material = tables.groups([row for row in of if not row["reference"]], "material")
-        agree = {name: sum(row["least_match"] >= AGREEING for row in runs) / len(runs)
-                 for name, runs in by_material.items()}
-        lines.append([run, solver, str(len(agree)),
-                      *(str(sum(share >= least for share in agree.values()))
-                        for least in (STABLE, 0.5)),
-                      ", ".join(name for name, share in agree.items() if share < STABLE) or "–"])
-    return tables.markdown(["runs of", "solver", "materials",
-                            f"{100 * STABLE:.0f} % of the runs agree on", "half of them on",
-                            "fewer agree on"], lines)
+        ["material", "solver", "n", "lowest E", "above the lowest, %", "scaled gradient", "agreement",
+         "of its lobes, %", "of its own, %", "collapsed, %", "copies, %", "blown up, %", "sphere PSNR, dB",
+         "why they stopped"],
+        [[material, solver, str(len(of)), f"{min(row['objective'] for row in of):.5g}",
+          _range([100 * row["excess"] for row in of]), _range([row["optimality"] for row in of], 2),
+          _range([row["agreement"] for row in of if not row["reference"]]), _same(of), _same(of, "own_agreement"),
+          _percent(of, lambda row: row["collapsed"]), _percent(of, lambda row: row["likest_pair"] > COPY),
+          _percent(of, lambda row: row["albedo_over_reference"] > BLOWN_UP),
+          _range([row["psnr_db"] for row in of], 4), _stops(of)]
+         for (material, solver), of in sorted(tables.groups(rows, "material", "solver").items())])
 
 
 def _lobes_table(rows):
@@ -468,16 +410,16 @@ def _lobes_table(rows):
         before[material, count] = best
         lines.append([material, str(count), str(len(of)), f"{best:.6g}", gain,
                       _percent(of, lambda row, best=best: row["objective"] <= (1 + SUCCESS) * best),
-                      _range([row["least_match"] for row in of if not row["reference"]]),
-                      _agree(of),
+                      _range([row["agreement"] for row in of if not row["reference"]]), _same(of),
                       _percent(of, lambda row: row["collapsed"]),
                       _percent(of, lambda row: row["likest_pair"] > COPY),
+                      _range([row["optimality"] for row in of], 2), _stops(of),
                       f"{stats.median([row['condition'] or math.inf for row in of]):.2g}",
                       str(max(row["unresolved"] or 0 for row in of))])
     return tables.markdown(
         ["material", "lobes", "runs", "lowest E", "less than with one lobe fewer, %",
-         "within 1 % of it, %", "least match", "agree, %", "collapsed, %", "copies, %",
-         "condition of J", "unresolved, at most"], lines)
+         "within 1 % of it, %", "agreement", "the same, %", "collapsed, %", "copies, %", "scaled gradient",
+         "why they stopped", "condition of J", "unresolved, at most"], lines)
 
 
 def _weakest_table(rows):
@@ -491,26 +433,17 @@ def _weakest_table(rows):
 
 def draw(drawn, _):
     products = {}
-    starts = [row for row in drawn["runs"] if row["run"] == "starts"]
-    by_count = [row for row in drawn["runs"] if row["run"] == "lobes"]
-    noise = [row for row in drawn["runs"] if row["run"] == "noise"]
-    if starts:
-        products["success.md"] = _success_table(starts, drawn["missing"])
-        products["shares"] = _shares_figure(starts)
-    if starts or noise:
-        products["stability.md"] = _stability_table(starts + noise)
-        products["stable.md"] = _stable_table(starts + noise)
-        solver = noise[0]["solver"] if noise else starts[0]["solver"]
-        products["stability"] = _stability_figure(
-            [row for row in starts + noise if row["solver"] == solver])
-    if by_count:
-        products["lobes.md"] = _lobes_table(by_count)
-        products["lobes"] = _lobes_figure(by_count)
-    for run, title, name in (("starts", "Seeded starts", "seeded"),
-                             ("noise", "Noise draws", "noise")):
-        of = [row for row in drawn["bands"] if row["run"] == run]
-        if of:
-            products[f"bands_{name}"] = _bands_figure(of, title)
+    of = {run: [row for row in drawn["runs"] if row["run"] == run] for run in (STARTS, NOISE, "lobes")}
+    if of[STARTS]:
+        products["solvers.md"] = _solvers_table(of[STARTS])
+        products["stability.md"] = _stability_table(of[STARTS])
+        products["stability"] = _stability_figure(of[STARTS])
+        products["shares"] = _shares_figure(of[STARTS])
+    if of[NOISE]:
+        products["noise.md"] = _noise_table(of[NOISE])
+    if of["lobes"]:
+        products["lobes.md"] = _lobes_table(of["lobes"])
+        products["lobes"] = _lobes_figure(of["lobes"])
     if drawn["spectra"]:
         products["spectra"] = _spectra_figure(drawn["spectra"])
         products["weakest.md"] = _weakest_table(drawn["weakest"])

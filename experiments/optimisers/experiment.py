@@ -163,6 +163,6 @@ def draw(drawn, _):
     rows = drawn["runs"]
     columns = [*(f"excess_at_{100 * share:.0f}_percent" for share in SHARES[:-1]), "excess"]
     products = {"summary.md": _summary(rows, columns), "paired.md": _paired(rows)}
-    if "curves" in drawn:
+    if drawn["curves"]:
         products["curves"] = _figure(drawn["curves"], rows)
     return products

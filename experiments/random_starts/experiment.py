@@ -174,5 +174,7 @@ def draw(drawn, _):
     starts, rows = drawn["starts"], drawn["solvers"]
     if not rows:
         return {}
-    return {"summary.md": _summary(rows), "paired.md": _paired(rows), "shares.md": _shares(starts),
-            "seen.md": _seen(drawn["seen"]), "ends": _figure(starts, rows)}
+    products = {"summary.md": _summary(rows), "paired.md": _paired(rows), "seen.md": _seen(drawn["seen"])}
+    if starts:
+        products |= {"shares.md": _shares(starts), "ends": _figure(starts, rows)}
+    return products

@@ -1,5 +1,5 @@
 // Fits to a part of a measurement, by several solvers and weightings from the same starts, and how
-// each looks. See README.md beside this file.
+// each looks. See README.md beside this file, and that of the experiment lobes.
 
 #include <gflags/gflags.h>
 
@@ -13,10 +13,13 @@
 #include "core/files/text_lines.h"
 #include "core/system/process.h"
 #include "experiments/program.h"
+#include "model/lobes/gauge.h"
+#include "solvers/diagnosis.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/measurement/brdf_samples.h"
@@ -24,16 +27,21 @@
 #include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened and lm_dogleg");
 DEFINE_string(weightings, "appearance", "a list of weightings of the objective");
 DEFINE_string(init, "roughness", "the starts, as `trilobe fit` has them");
-DEFINE_int32(starts, 1, "how many, of seeds 1, 2, ...");
+DEFINE_int32(starts, 1, "how many, of seeds that follow each other");
+DEFINE_int32(first_start, 1, "the first seed");
 DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
 DEFINE_string(corrupt, "", "as `trilobe fit` has it");
 DEFINE_uint64(data_seed, 1, "of what is random in --corrupt");
 DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond this, in degrees");
 DEFINE_int32(lights, 200, "lights on the sphere that is compared");
+DEFINE_int32(max_iterations, 0, "as `trilobe fit` has it; 0: its default");
+DEFINE_double(tolerance, -1, "as `trilobe fit` has it; -1: its default");
+DEFINE_string(models, "", "a folder for the fitted models, SOLVER-SEED.json");
 
 namespace trilobe {
 namespace {
@@ -76,6 +84,8 @@ struct Run {
 Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objective& objective) {
   SolverOptions options;
   options.diagnose = false;
+  if (FLAGS_max_iterations > 0) options.max_iterations = FLAGS_max_iterations;
+  if (FLAGS_tolerance >= 0) options.relative_decrease_tolerance = FLAGS_tolerance;
   options.trust_region = way.trust_region;
   const double since = ProcessorSeconds();
   FactorModel model = init.make(objective, seed);
@@ -86,6 +96,18 @@ Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objec
   }
   SolverSummary summary = MakeSolver(way.solver)->Solve(objective, options, &model);
   return {.model = model, .summary = summary, .seconds = ProcessorSeconds() - since};
+}
+
+double OptimalityOf(const Objective& objective, const FactorModel& model) {
+  QuadraticModel at;
+  NormalEquations(objective).Evaluate(model, Hessian::kGaussNewton, &at);
+  return ScaledProjectedGradient(at, model.parameters());
+}
+
+void KeepModel(const Objective& objective, FactorModel model, const std::string& name) {
+  Canonicalize(objective.coverage(), &model);
+  WriteModel({.model = model, .unobserved = UnobservedParameters(objective.coverage()), .fit = {}},
+             FLAGS_models + "/" + name + ".json");
 }
 
 // A line of JSON a fit: E of what was fitted, over a black model's, too, the latter by default
@@ -102,7 +124,7 @@ int Main(const std::string& source) {
   for (const std::string_view name : SplitCells(FLAGS_weightings)) {
     const Weighting weighting = FindWeighting(name);
     const Objective few = ThinnedObjective(corrupted ? *corrupted : clean_table, weighting);
-    for (int seed = 1; seed <= FLAGS_starts; ++seed) {
+    for (int seed = FLAGS_first_start; seed < FLAGS_first_start + FLAGS_starts; ++seed) {
       for (const std::string_view solver : solvers) {
         const Run run = FitFrom(init, seed, WayOf(solver), few);
         const double E = run.summary.final_objective;
@@ -111,12 +133,15 @@ int Main(const std::string& source) {
             "{\"weighting\": \"%s\", \"seed\": %d, \"solver\": \"%s\", \"E\": %.17g, "
             "\"relative_E\": %.17g, \"clean_relative_E\": %.17g, \"psnr_db\": %.6g, "
             "\"delta_e\": %.6g, \"iterations\": %d, \"raises\": %zu, \"stop_reason\": \"%s\", "
-            "\"seconds\": %.4g}\n",
+            "\"optimality\": %.4g, \"seconds\": %.4g}\n",
             weighting.name.c_str(), seed, std::string(solver).c_str(), E, E / few.MeasuredEnergy(),
             clean.Value(run.model) / clean.MeasuredEnergy(), sphere.psnr_db, sphere.mean_delta_e,
             run.summary.iterations, run.summary.FindRaises().iterations.size(),
-            StopReasonName(run.summary.stop_reason), run.seconds);
+            StopReasonName(run.summary.stop_reason), OptimalityOf(few, run.model), run.seconds);
         std::fflush(stdout);
+        if (!FLAGS_models.empty()) {
+          KeepModel(few, run.model, std::string(solver) + "-" + std::to_string(seed));
+        }
       }
     }
   }

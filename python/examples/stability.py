@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Stability: fits from many starts, how far apart their E are, and how far apart their tables.
+"""Stability: fits from many starts, how far apart their E are, and whether they have the same lobes.
 
 stability.py [--quick] [--out=FOLDER]     draws starts.png: D of each fit
 """
@@ -32,6 +32,9 @@ def main():
     objectives = np.array([result.report["objective"] for result in results])
     near = np.mean(objectives < 1.01 * objectives.min())
     print(f"E from {objectives.min():.4g} to {objectives.max():.4g}; {near:.0%} of starts within 1 % of the best")
+    best = results[int(objectives.argmin())].model
+    alike = np.array([trilobe.match_lobes(best, result.model).agreement for result in results])
+    print(f"the lobes of the best in {np.mean(alike >= 0.9):.0%} of them; least agreement {alike.min():.2f}")
     # Models may differ in their tables and not in what they say.
     rng = np.random.default_rng(1)
     w = rng.normal(size=(2, 2000, 3))

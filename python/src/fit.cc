@@ -310,6 +310,7 @@ Outcome RunFit(const Measured& measured, const NamedValues& options,
   report.fit = file.fit;
   FillReport(fit, &report);
   report.summary.phases.reading = report.seconds.read;
+  report.processor = ProcessorName();
   report.peak_memory = PeakMemory();
   outcome.parameters.assign(file.model.parameters().begin(), file.model.parameters().end());
   outcome.model_text = FormatModel(file);

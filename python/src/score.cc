@@ -3,6 +3,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <array>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "fit/reports/score_report.h"
 #include "fit_module.h"
 #include "model/appearance/picture_data.h"
+#include "model/lobes/lobe_match.h"
 #include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/model/appearance/appearance.h"
@@ -116,10 +118,20 @@ std::tuple<NumpyArray<double>, NumpyArray<double>, double> RenderPair(const nb::
   return {ImageOf(pair->measured), ImageOf(pair->fitted), exposure};
 }
 
+// Agreement, partners and matches (LobeMatch).
+std::tuple<double, std::vector<int>, std::vector<double>> MatchLobesOf(const nb::bytes& reference,
+                                                                       const nb::bytes& model) {
+  const LobeMatch match =
+      MatchLobes(ParseModel({reference.c_str(), reference.size()}, "the reference"),
+                 ParseModel({model.c_str(), model.size()}, "the model"));
+  return {match.agreement, match.lobe, match.match};
+}
+
 }  // namespace
 
 void BindScore(nb::module_* module) {
   module->def("score", &Score, nb::arg("model"), nb::arg("measured"), nb::arg("options"));
+  module->def("match_lobes", &MatchLobesOf, nb::arg("reference"), nb::arg("model"));
   module->def("render", &RenderModel, nb::arg("model"), nb::arg("options"));
   module->def("render_pair", &RenderPair, nb::arg("model"), nb::arg("measured"),
               nb::arg("options"));

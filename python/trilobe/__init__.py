@@ -18,10 +18,12 @@ from trilobe._brdf import Brdf, Sample, load, materials
 from trilobe._core import Error
 from trilobe._fit_texels import fit_texels
 from trilobe._fitting import (
+    LobeMatch,
     Solver,
     fit,
     fit_many,
     initial_models,
+    match_lobes,
     score,
     solvers,
     synthetic_materials,
@@ -37,6 +39,7 @@ from trilobe._uncertainty import Uncertainty
 __all__ = [
     "Brdf",
     "Error",
+    "LobeMatch",
     "Measurement",
     "Objective",
     "Record",
@@ -53,6 +56,7 @@ __all__ = [
     "initial_models",
     "load",
     "load_texels",
+    "match_lobes",
     "materials",
     "read",
     "score",

@@ -56,13 +56,15 @@ def run(sources: list[str], out: str, workers: int, program: Any, flags: dict[st
     table = os.path.join(out, "fits.csv")
     try:
         with open(table, newline="", encoding="utf-8") as file:
-            return [{key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+            return [{key: _cell(value) for key, value in row.items()} for row in csv.DictReader(file)]
     except OSError as error:
         raise Error(f"cannot read '{table}': {error.strerror}") from None
 
 
-def _number(text: Any) -> Any:
+def _cell(text: Any) -> Any:
+    """A number, or a text without the ' that keeps a spreadsheet from taking it for a formula."""
     try:
         return float(text)
     except (TypeError, ValueError):
-        return text
+        guarded = isinstance(text, str) and text[:1] == "'" and text[1:2] in tuple("=+-@\t\r'")
+        return text[1:] if guarded else text

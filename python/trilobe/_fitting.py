@@ -195,6 +195,23 @@ def score(
     return report
 
 
+class LobeMatch(NamedTuple):
+    """How far two models have the same lobes, as `match_lobes` returns it."""
+
+    agreement: float
+    """The mean match of all lobes of both, weighted by the light that they reflect; 1: the same."""
+    lobe: list[int]
+    """Which lobe of the model each lobe of the reference is; -1 where the model has fewer."""
+    match: list[float]
+    """How alike the two are, from 0 to 1."""
+
+
+def match_lobes(reference: Brdf | str | os.PathLike[str], model: Brdf | str | os.PathLike[str]) -> LobeMatch:
+    """Pairs the lobes of two models of one form, and says how alike they are (docs/study.md#the-same-lobes)."""
+    texts = [model_of(value).to_json().encode() for value in (reference, model)]
+    return LobeMatch(*fits().match_lobes(*texts))
+
+
 class Solver(NamedTuple):
     """What can be said of a solver."""
 

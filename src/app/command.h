@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace trilobe {
@@ -17,6 +18,8 @@ struct Command {
   int max_arguments = 0;
   std::string details;             // text for `trilobe help NAME`: what it reads, does and writes
   std::vector<std::string> flags;  // accepted flags, listed in its help
+  // Other names of flags, and the flags: {"starts", "runs"}.
+  std::vector<std::pair<std::string, std::string>> other_names = {};
   // Flags that only some values of another flag accept (--solver): those of all values, and the
   // help of the given value.
   std::vector<std::string> particular_flags = {};

@@ -115,7 +115,8 @@ void WriteForRenderer(const std::string& source) {
 Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
-  RefuseForModel(source, {"noise", "extrapolated", "radiometry", "columns", "theta_i", "bands"});
+  RefuseForModel(source, {"noise", "extrapolated", "outliers", "dark_noise", "radiometry",
+                          "columns", "theta_i", "bands"});
   const FactorModel model = ModelOfSource(source).model;
   if (model.spec().anisotropic() && !WritableFormat(out).holds_anisotropic) {
     throw Error("--out=" + out + ": " + source +
@@ -203,16 +204,16 @@ int RunConvert(std::span<const std::string> arguments) {
   }
   CheckRendererFlags(FLAGS_out);
   const std::string out = RequiredMeasurementOut("convert");
-  Inputs({source}).CheckOutput(out);
+  Inputs({source}).CheckOutput(out, CheckMayReplaceMeasurement);
   SourceOptions options = SourceOptionsFromFlags();
-  options.outliers = options.dark_noise = true;  // what is copied stays as it is
+  options.as_they_are = true;
   if (FLAGS_spectral) {
     WriteMeasuredSpectra(source, options);
     return 0;
   }
   const Measurement measurement = MeasurementOf(source, out, options);
   PrintNotes(measurement);
-  const std::string written = WriteMeasurement(measurement, out, options.num_threads);
+  const std::string written = ReplaceMeasurement(measurement, out, options.num_threads);
   PrintLine("wrote " + out + ": " + written);
   return 0;
 }

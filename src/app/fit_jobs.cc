@@ -217,14 +217,14 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
       run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
 }
 
-void MakeJobs(size_t count, const std::string& things,
+void MakeJobs(size_t count, int at_once, const std::string& things,
               const std::function<FitOutcome&(size_t k)>& outcome_of,
               const std::function<void(size_t k)>& make,
               const std::function<void(size_t k, size_t done)>& tell) {
   JobProgress progress(count, things);
   std::mutex mutex;
   size_t done = 0;
-  ParallelJobs(static_cast<int>(count), ThreadsFromFlags(), [&](int k) {
+  ParallelJobs(static_cast<int>(count), at_once, [&](int k) {
     if (InterruptGuard::signal() != 0) return;
     FitOutcome& outcome = outcome_of(k);
     try {

@@ -30,10 +30,10 @@ void TakeReport(const nlohmann::ordered_json& report, FitOutcome* outcome);
 // outcome. Throws Error if the fit fails.
 void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* outcome);
 
-// Makes jobs side by side, --threads at once, with progress by the name of `things`. `make` makes
+// Makes jobs side by side, `at_once` of them, with progress by the name of `things`. `make` makes
 // one; what it throws becomes the error of its outcome, which has failed then. `tell` is called as
 // each ends, one at a time, with how many have ended. After Ctrl-C none begins.
-void MakeJobs(size_t count, const std::string& things,
+void MakeJobs(size_t count, int at_once, const std::string& things,
               const std::function<FitOutcome&(size_t k)>& outcome_of,
               const std::function<void(size_t k)>& make,
               const std::function<void(size_t k, size_t done)>& tell);

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/command.h"
@@ -18,6 +19,7 @@
 #include "app/result_folder.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "core/math/quantile.h"
 #include "fit/reports/print.h"
 #include "model/appearance/verdict.h"
 #include "trilobe/core/base/error.h"
@@ -41,9 +43,10 @@ std::string Summary(std::vector<FitOutcome> outcomes) {
       std::to_string(same) + " of " + std::to_string(outcomes.size()) + " cannot be told apart; ";
   std::erase_if(outcomes, [](const FitOutcome& outcome) { return !outcome.has_picture; });
   if (outcomes.empty()) return verdicts + "no picture";
-  std::ranges::sort(outcomes, {}, &FitOutcome::psnr_db);
-  const FitOutcome& least = outcomes.front();
-  return verdicts + "sphere " + Text(outcomes[outcomes.size() / 2].psnr_db, 3) +
+  std::vector<double> psnr_db;
+  for (const FitOutcome& outcome : outcomes) psnr_db.push_back(outcome.psnr_db);
+  const FitOutcome& least = *std::ranges::min_element(outcomes, {}, &FitOutcome::psnr_db);
+  return verdicts + "sphere " + Text(Median(std::move(psnr_db)), 3) +
          " dB in the median, at least " + Text(least.psnr_db, 3) + " (" + Printable(least.name) +
          ")";
 }
@@ -118,6 +121,8 @@ std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
   if (FLAGS_verbose) throw Error("--verbose is for the fit of one SOURCE; leave it out");
+  const int threads = ThreadsFromFlags();
+  settings.side_by_side = threads;
   settings.pair = true;
   settings.key += "pair\n";
   const std::vector<FitOutcome> all = ListSources(arguments);
@@ -128,14 +133,15 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   for (const size_t k : JobsOfShard(all.size())) outcomes.push_back(all[k]);
   std::vector<ResultFolder> folders;
   for (const FitOutcome& outcome : outcomes) {
-    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), FitFolderMarks(), inputs);
+    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), inputs);
   }
-  const ResultFolder summary(out, {kTableName, kPageName}, {kTableName, kPageName}, inputs);
+  const ResultFolder summary(out, {kTableName, kPageName}, inputs);
   summary.Open();
 
   const InterruptGuard guard;
   MakeJobs(
-      outcomes.size(), "measurements", [&](size_t k) -> FitOutcome& { return outcomes[k]; },
+      outcomes.size(), threads, "measurements",
+      [&](size_t k) -> FitOutcome& { return outcomes[k]; },
       [&](size_t k) { FitOrKeep(settings, &folders[k], &outcomes[k]); },
       [&](size_t k, size_t done) {
         PrintOutcome(outcomes[k], done, outcomes.size());

@@ -20,6 +20,7 @@
 #include "core/base/file_names.h"
 #include "core/base/json_text.h"
 #include "core/files/file.h"
+#include "core/files/own_mark.h"
 #include "core/system/content_hash.h"
 #include "core/system/process.h"
 #include "fit/reports/bands_report.h"
@@ -138,11 +139,16 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
   if (settings.reconstruction) {
     const FactorModel& model = run->file.model;
     const std::string& source = run->file.fit.source;
-    if (model.spec().anisotropic()) {
-      WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(kAtNodesName));
+    const bool at_nodes = model.spec().anisotropic();
+    const char* const name = at_nodes ? kAtNodesName : kReconstructionName;
+    const BeforeRenaming keep = [&](std::string_view content) {
+      folder->KeepChecksum(name, content);
+    };
+    if (at_nodes) {
+      WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(name), keep);
     } else {
       // A MERL file has one grid, whatever that of the fit was.
-      WriteMerl(Reconstruct(model, source, {}, threads), folder->PathOf(kReconstructionName));
+      WriteMerl(Reconstruct(model, source, {}, threads), folder->PathOf(name), keep);
     }
   }
   const PictureData pictured =
@@ -186,10 +192,13 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
   });
   if (!failure.empty()) report.key.clear();  // not what such a fit leaves
   report.files = folder->Files();
+  std::erase(report.files, kReportName);  // that of an unfinished run
   report.files.emplace_back(kReportName);
   report.seconds.draw = stopwatch.Lap();
-  folder->Write(kReportName,
-                [&report](std::ostream& out) { out << JsonText(ToJson(report), 2) << "\n"; });
+  nlohmann::ordered_json json = {{"format", kReportFormat}};
+  json.update(ToJson(report));
+  json["checksums"] = folder->checksums();
+  folder->Write(kReportName, [&](std::ostream& out) { out << JsonText(json, 2) << "\n"; });
   return failure;
 }
 
@@ -235,11 +244,6 @@ const std::vector<std::string>& FitFileNames() {
   return names;
 }
 
-const std::vector<std::string>& FitFolderMarks() {
-  static const std::vector<std::string> marks = {kModelName, kReportName};
-  return marks;
-}
-
 std::string FitKey(const FitSettings& settings, const Source& source) {
   return ContentHash(ProgramName() + "\n" + ProgramBuild() + "\n" + settings.key +
                      source.Fingerprint());
@@ -272,6 +276,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   FitReport report;
   report.noise = settings.source.noise;
   report.seed = static_cast<int64_t>(settings.fit.seed);
+  report.processor = ProcessorName();
+  report.side_by_side = settings.side_by_side;
   report.data_seed = static_cast<int64_t>(settings.source.seed);
   Stopwatch stopwatch;
   SourceOptions source_options = settings.source;

@@ -44,6 +44,7 @@ struct FitSettings {
   bool convergence = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail
   bool view = false;                // view.html, a page
+  int side_by_side = 1;             // fits that run at once, for the report
   bool tell_notes = true;           // print what was noticed of the measurement
   std::vector<std::string> inputs;  // files that all fits read
   std::string key;                  // encodes these settings, with input files by their content
@@ -52,9 +53,6 @@ struct FitSettings {
 
 // Names of all files that a fit may write into its folder.
 const std::vector<std::string>& FitFileNames();
-
-// Every folder of a fit has at least one of these files.
-const std::vector<std::string>& FitFolderMarks();
 
 // Hash of everything that the result depends on: settings, content of the measurement, version of
 // the program. 32 hexadecimal digits.

@@ -39,6 +39,11 @@ DEFINE_bool(
     raw, false,
     "store the model that the solver found, as for comparing solvers: entries at the edge of "
     "the data are not tied, reflected light is not matched, tables are not smoothed");
+DEFINE_bool(
+    held_out, false,
+    "also fit without a fifth of the blocks of directions, drawn by --data_seed, and report "
+    "E and Delta E at these: how well does it predict what it has not seen? Takes twice as "
+    "long");
 DECLARE_bool(spectral);
 DEFINE_bool(reconstruction, false,
             "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
@@ -84,7 +89,7 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags =
       WithSourceFlags({"solver", "init", "weighting", "prior", "robust", "smoothness",
-                       "match_reflectance", "raw", "max_parameters", "spectral"});
+                       "match_reflectance", "raw", "max_parameters", "spectral", "held_out"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "convergence", "plots", "verbose", "probe",
@@ -95,8 +100,8 @@ std::vector<std::string> FitFlags() {
 namespace {
 
 // Flags by which other files are written, but the same model.
-constexpr const char* kFlagsOfNoModel[] = {"spectral", "reconstruction", "convergence", "plots",
-                                           "diagnose"};
+constexpr const char* kFlagsOfNoModel[] = {"spectral", "reconstruction", "convergence",
+                                           "held_out", "plots",          "diagnose"};
 
 // `without`: flags that do not count.
 std::string KeyOfFlags(std::span<const char* const> without) {
@@ -154,6 +159,7 @@ FitSettings FitSettingsFromFlags() {
   fit.seed = static_cast<uint64_t>(FLAGS_seed);
   fit.solver_options(ModelSpec());  // its errors
   settings.source = SourceOptionsFromFlags();
+  if (FLAGS_held_out) fit.held_out = settings.source.seed;
   settings.convergence = FLAGS_convergence;
   settings.reconstruction = FLAGS_reconstruction;
   settings.plots = settings.view = FLAGS_plots && !IsDefault("plots");

@@ -83,6 +83,8 @@ DEFINE_string(
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
 DEFINE_string(out, "", "where to write: a file or, for fit, study, info and plot, a folder");
+DEFINE_bool(force, false,
+            "overwrite or remove what is in the way of --out, though Trilobe has not written it");
 DEFINE_bool(json, false, "print one JSON object instead of a table");
 DEFINE_bool(verbose, false,
             "print all there is to say, and not only the verdict and what it rests on");

@@ -31,6 +31,7 @@ DECLARE_bool(outliers);
 DECLARE_bool(dark_noise);
 DECLARE_string(weighting);
 DECLARE_string(out);
+DECLARE_bool(force);
 
 // Light of the spheres of fit, score and plot.
 DECLARE_string(probe);

@@ -16,6 +16,7 @@
 #include "app/result_folder.h"
 #include "core/base/json_text.h"
 #include "core/base/names.h"
+#include "core/files/own_mark.h"
 #include "core/system/process.h"
 #include "fit/reports/print.h"
 #include "model/appearance/picture_data.h"
@@ -100,7 +101,7 @@ int RunForms(std::span<const std::string> arguments) {
   appearance.num_threads = ThreadsFromFlags();
   std::optional<ResultFolder> folder;
   if (!FLAGS_out.empty()) {
-    folder.emplace(FLAGS_out, FileNames(), FileNames(), Inputs({of, source, FLAGS_probe}));
+    folder.emplace(FLAGS_out, FileNames(), Inputs({of, source, FLAGS_probe}));
   }
   const ModelFile file = ModelOfSource(of);
   const ModelSpec& spec = file.model.spec();
@@ -161,7 +162,8 @@ int RunForms(std::span<const std::string> arguments) {
   CompareForms(problem, start, options);
   Json rows = Json::array();
   for (const SeenForm& form : forms) rows.push_back(ToJson(form, forms.front().fit));
-  const Json report = {{"model", of}, {"source", source}, {"forms", rows}};
+  const Json report = {
+      {"format", kFormsFormat}, {"model", of}, {"source", source}, {"forms", rows}};
   if (FLAGS_json) PrintJson(report);
   if (folder && !forms.empty()) {
     folder->Write(kReportName, [&](std::ostream& out) { out << JsonText(report, 2) << "\n"; });

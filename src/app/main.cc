@@ -28,10 +28,18 @@
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {
-      FitCommand(),     StudyCommand(), SolversCommand(),  FormsCommand(), PlanCommand(),
-      CompareCommand(), ScoreCommand(), PlotCommand(),     InfoCommand(),  ConvertCommand(),
-      SynthCommand(),   ViewCommand(),  MaterialsCommand()};
+  static const std::vector<Command> commands = [] {
+    std::vector<Command> all = {
+        FitCommand(),     StudyCommand(), SolversCommand(),  FormsCommand(), PlanCommand(),
+        CompareCommand(), ScoreCommand(), PlotCommand(),     InfoCommand(),  ConvertCommand(),
+        SynthCommand(),   ViewCommand(),  MaterialsCommand()};
+    // Whatever writes files can be told to overwrite.
+    for (Command& command : all) {
+      const auto out = std::ranges::find(command.flags, "out");
+      if (out != command.flags.end()) command.flags.insert(out + 1, "force");
+    }
+    return all;
+  }();
   return commands;
 }
 
@@ -224,6 +232,22 @@ void CheckFlags(const CommandLine& line, const Command& command) {
   }
 }
 
+// Takes other names of a command's flags. Throws Error where both are given.
+void TakeOtherNames(CommandLine* line) {
+  const size_t place = !line->words.empty() && line->words[0] == "help" ? 1 : 0;
+  if (line->words.size() <= place) return;
+  const auto command = std::ranges::find(Commands(), line->words[place], &Command::name);
+  if (command == Commands().end()) return;
+  for (const auto& [other, name] : command->other_names) {
+    const auto given = std::ranges::find(line->flags, other, &CommandLine::Flag::name);
+    if (given == line->flags.end()) continue;
+    if (std::ranges::find(line->flags, name, &CommandLine::Flag::name) != line->flags.end()) {
+      throw Error("--" + other + " is another name of --" + name + "; give one of them");
+    }
+    given->name = name;
+  }
+}
+
 int Help(const CommandLine& line) {
   if (line.words.empty()) {
     PrintHelp();
@@ -266,6 +290,7 @@ void OccupyStandardStreams() {
 int Main(int argc, char** argv) {
   DefineSolverFlags();
   CommandLine line = ReadCommandLine(argc, argv);
+  TakeOtherNames(&line);
   SetFlags(line, argv[0]);
   if (argc < 2) line.help = true;
   if (!line.words.empty() && line.words[0] == "help") {

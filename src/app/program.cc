@@ -3,6 +3,9 @@
 #include <dlfcn.h>
 #include <gflags/gflags.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "core/files/file.h"
 #include "core/system/content_hash.h"
 #include "fit/scene/fit_cache.h"
@@ -36,6 +39,14 @@ const std::string& ProgramBuild() {
     return bytes.empty() ? bytes : ContentHash(bytes);
   }();
   return build;
+}
+
+std::string ProgramRevision() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return "";
+  const std::string text = FileBytes((program.string() + ".revision").c_str());
+  return text.substr(0, text.find('\n'));
 }
 
 }  // namespace trilobe

@@ -12,6 +12,11 @@ std::string ProgramName();
 // another build are not reused, because it may fit differently. Empty if the bytes cannot be read.
 const std::string& ProgramBuild();
 
+// The revision of the sources when the program was built, as `git describe` names it, "-dirty" if
+// they were changed; "" where that is not known, as of an installed program. It is a file beside
+// the program: no part of it, since results of the same build are reused.
+std::string ProgramRevision();
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_APP_PROGRAM_H_

@@ -5,13 +5,23 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "app/own_files.h"
 #include "core/files/file.h"
+#include "core/files/own_mark.h"
+#include "core/system/content_hash.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
 Inputs::Inputs(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     struct stat status {};
@@ -29,38 +39,30 @@ void Inputs::CheckNotRead(const std::string& path) const {
               "', which this command reads; give another --out");
 }
 
-void Inputs::CheckOutput(const std::string& path) const {
+void Inputs::CheckOutput(const std::string& path, const MayReplace& may_replace) const {
   CheckNotRead(path);
   CheckWritable(path);
+  may_replace(path);
   std::error_code ignored;
-  SweepTemporaryFiles(std::filesystem::absolute(path, ignored).parent_path());
+  SweepTemporaryFiles(fs::absolute(path, ignored).parent_path());
 }
 
 std::string PreviousName(const std::string& name) {
-  const std::filesystem::path path(name);
+  const fs::path path(name);
   return path.stem().string() + ".previous" + path.extension().string();
 }
 
-ResultFolder::ResultFolder(std::string path, std::vector<std::string> names,
-                           const std::vector<std::string>& marks, const Inputs& inputs)
+ResultFolder::ResultFolder(std::string path, std::vector<std::string> names, const Inputs& inputs)
     : path_(std::move(path)), names_(std::move(names)), run_(RandomDigits()) {
   std::error_code ignored;
-  if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_directory(path_, ignored)) {
+  if (fs::exists(path_, ignored) && !fs::is_directory(path_, ignored)) {
     throw Error("cannot write into '" + path_ + "': it is not a folder; give another --out");
   }
   for (const std::string& name : names_) {
     inputs.CheckNotRead(PathOf(name));
     inputs.CheckNotRead(PathOf(PreviousName(name)));
     CheckWritable(PathOf(name));
-  }
-  const std::vector<std::string> files = Files();
-  const bool ours = std::ranges::any_of(marks, [&](const std::string& mark) {
-    return std::ranges::find(files, mark) != files.end();
-  });
-  if (!files.empty() && !ours) {
-    throw Error("'" + PathOf(files.front()) +
-                "' is not of a run of this command, which would remove it; move it away, or give "
-                "another --out");
+    CheckMayReplace(PathOf(name));
   }
 }
 
@@ -72,6 +74,7 @@ void ResultFolder::Open() const {
 
 void ResultFolder::KeepEarlier(const std::string& name) {
   CheckWritable(PathOf(PreviousName(name)));
+  CheckMayReplace(PathOf(PreviousName(name)));
   kept_.push_back(name);
 }
 
@@ -87,15 +90,22 @@ void ResultFolder::Write(const std::string& name, const std::function<void(std::
     return;
   }
   ahead_.push_back(name);
-  WriteFile(PathOf(name), write, [&] { RemoveEarlierRun(); });
+  WriteFile(PathOf(name), write, [&](std::string_view) { RemoveEarlierRun(); });
   begun_ = true;
+}
+
+void ResultFolder::KeepChecksum(const std::string& name, std::string_view content) {
+  checksums_[name] = ContentHash(content);
+  const nlohmann::ordered_json record = {
+      {"format", kReportFormat}, {"unfinished", true}, {"run", run_}, {kChecksumsKey, checksums_}};
+  WriteFile(PathOf(names_.front()), [&](std::ostream& out) { out << record.dump(2) << "\n"; });
 }
 
 std::vector<std::string> ResultFolder::Files() const {
   std::vector<std::string> files;
   std::ranges::copy_if(names_, std::back_inserter(files), [this](const std::string& name) {
     std::error_code ignored;
-    return std::filesystem::exists(PathOf(name), ignored);
+    return fs::exists(PathOf(name), ignored);
   });
   return files;
 }
@@ -105,12 +115,12 @@ void ResultFolder::RemoveEarlierRun() const {
   for (const std::string& name : names_) {
     std::error_code error;
     if (std::ranges::find(kept_, name) != kept_.end()) {
-      std::filesystem::rename(PathOf(name), PathOf(PreviousName(name)), error);
+      fs::rename(PathOf(name), PathOf(PreviousName(name)), error);
       if (!error) continue;
       throw Error("cannot rename '" + PathOf(name) + "' of an earlier run: " + error.message());
     }
     if (std::ranges::find(ahead_, name) != ahead_.end()) continue;
-    std::filesystem::remove(PathOf(name), error);
+    fs::remove(PathOf(name), error);
     if (error) {
       throw Error("cannot remove '" + PathOf(name) + "' of an earlier run: " + error.message());
     }

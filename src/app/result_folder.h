@@ -7,8 +7,11 @@
 #include <map>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "app/own_files.h"
 
 namespace trilobe {
 
@@ -18,9 +21,10 @@ class Inputs {
   Inputs() = default;
   explicit Inputs(const std::vector<std::string>& paths);
 
-  // Throws Error if `path` is an input, under any name or link, or cannot be written. Removes
-  // temporary files that killed runs have left beside it.
-  void CheckOutput(const std::string& path) const;
+  // Throws Error if `path` is an input, under any name or link, cannot be written, or may not be
+  // replaced. Removes temporary files that killed runs have left beside it.
+  using MayReplace = std::function<void(const std::string& path)>;
+  void CheckOutput(const std::string& path, const MayReplace& may_replace = CheckMayReplace) const;
   // Throws Error if `path` is an input.
   void CheckNotRead(const std::string& path) const;
 
@@ -36,12 +40,10 @@ std::string PreviousName(const std::string& name);
 // files are kept. Not thread-safe.
 class ResultFolder {
  public:
-  // `names`: all files that this or an earlier run may write; first the one that a complete run
-  // writes last. `marks`: every run writes at least one of these. Does not create the folder.
-  // Throws Error if a file is an input or cannot be written, or if the folder has some of the files
-  // but no mark, and so does not come from a run.
-  ResultFolder(std::string path, std::vector<std::string> names,
-               const std::vector<std::string>& marks, const Inputs& inputs);
+  // `names`: all files that this or an earlier run may write; first its record, which a complete
+  // run writes last. Does not create the folder. Throws Error if a file is an input, cannot be
+  // written, or may not be replaced.
+  ResultFolder(std::string path, std::vector<std::string> names, const Inputs& inputs);
 
   const std::string& path() const { return path_; }
   std::string PathOf(const std::string& name) const { return path_ + "/" + name; }
@@ -52,7 +54,7 @@ class ResultFolder {
   void Open() const;
 
   // Has the first Write rename this file of the earlier run to its PreviousName instead of removing
-  // or replacing it. Throws Error if that cannot be done.
+  // or replacing it. Throws Error if that cannot be done, or may not be.
   void KeepEarlier(const std::string& name);
 
   // Writes a file of this run without removing the earlier run; the first Write keeps it.
@@ -60,6 +62,13 @@ class ResultFolder {
   // Writes a file of this run. The first call removes the files of the earlier run; after it, other
   // code may write files of the run directly.
   void Write(const std::string& name, const std::function<void(std::ostream&)>& write);
+
+  // To be called, after the first Write, when a file is complete whose format has no room to say
+  // who wrote it, and before it has its name: keeps its checksum in the record, which says until
+  // the run is complete that it is not.
+  void KeepChecksum(const std::string& name, std::string_view content);
+  // Checksums by name, for the record of the complete run.
+  const std::map<std::string, std::string>& checksums() const { return checksums_; }
 
   // Which of the names exist in the folder. After the first Write they are all of this run.
   std::vector<std::string> Files() const;
@@ -71,6 +80,7 @@ class ResultFolder {
   std::vector<std::string> names_;
   std::string run_;
   bool begun_ = false;
+  std::map<std::string, std::string> checksums_;
   std::vector<std::string> ahead_;  // written by WriteAhead
   std::vector<std::string> kept_;   // of the earlier run
 };

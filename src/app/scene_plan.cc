@@ -19,6 +19,7 @@
 #include "core/base/json_text.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "core/files/own_mark.h"
 #include "core/system/content_hash.h"
 #include "fit/reports/print.h"
 #include "trilobe/core/base/error.h"
@@ -158,21 +159,17 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   return json;
 }
 
-// The plan that a scene has left in a folder; null if there is none. Throws Error for other JSON.
+// The plan that a scene has left in a folder; null if there is none. Throws Error for another file.
 nlohmann::json EarlierPlan(const std::string& folder) {
   const std::string path = folder + "/" + kPlanName;
-  nlohmann::json plan;
+  CheckMayReplace(path);
   try {
-    plan = nlohmann::json::parse(ReadJsonText(path, path + ": not a plan"));
+    const std::string text = ReadJsonText(path, path + ": not a plan");
+    if (SaysOwn(text)) return nlohmann::json::parse(text);
   } catch (const Error&) {
-    return plan;  // none
-  } catch (const nlohmann::json::exception&) {
-    plan = false;
+    return nullptr;  // none
   }
-  if (!plan.is_object() || !(plan.contains("files") || plan.contains("materials"))) {
-    throw Error("'" + path + "' is not a plan of `trilobe fit --scene`; give another --out");
-  }
-  return plan;
+  return nullptr;  // --force
 }
 
 // Names of the files that an earlier scene has left, by what its plan says.
@@ -190,8 +187,7 @@ std::set<std::string> FilesOfPlan(const nlohmann::json& plan) {
       }
     }
   } catch (const nlohmann::json::exception&) {
-    throw Error(std::string("a '") + kPlanName +
-                "' there is not a plan of `trilobe fit --scene`; give another --out");
+    names.clear();  // damaged since
   }
   names.erase(kPlanName);
   return names;
@@ -215,17 +211,13 @@ std::string KeyOf(const Scene& scene) {
   return ContentHash(key);
 }
 
-// Has the folder keep the models of an earlier scene that this one does not make again. Returns how
-// many.
+// Has the folder keep the models in it that this scene does not make again. Returns how many.
 int KeepEarlierModels(const nlohmann::json& plan, const std::set<std::string>& files,
                       const std::string& key, ResultFolder* folder) {
-  if (plan.is_null() || (plan.contains("key") && plan.at("key") == key)) return 0;
+  const bool same = plan.contains("key") && plan.at("key") == key;
   int kept = 0;
-  for (const std::string& file : files) {
-    std::error_code ignored;
-    if (!file.ends_with(".json") || !std::filesystem::exists(folder->PathOf(file), ignored)) {
-      continue;
-    }
+  for (const std::string& file : folder->Files()) {
+    if (!file.ends_with(".json") || file == kPlanName || (same && files.contains(file))) continue;
     folder->KeepEarlier(file);
     ++kept;
   }
@@ -296,14 +288,18 @@ int RunSceneFit(const std::string& path) {
   const std::set<std::string> earlier_files = FilesOfPlan(earlier);
   const std::vector<std::string> names = SceneFileNames(scene, earlier_files);
   const std::string key = KeyOf(scene);
-  ResultFolder folder(out, names, {kPlanName}, Inputs(FilesOf(scene)));
+  ResultFolder folder(out, names, Inputs(FilesOf(scene)));
   const int kept = KeepEarlierModels(earlier, earlier_files, key, &folder);
   folder.Open();
-  const auto plan_text = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
-    plan["run"] = folder.run();
-    plan["key"] = key;
-    plan["files"] = files;
-    return JsonText(std::move(plan), 2) + "\n";
+  const auto plan_text = [&](const nlohmann::ordered_json& plan,
+                             const std::vector<std::string>& files) {
+    nlohmann::ordered_json marked = {{"format", kPlanFormat}};
+    marked.update(plan);
+    marked["run"] = folder.run();
+    marked["key"] = key;
+    marked["files"] = files;
+    marked["checksums"] = folder.checksums();  // none: all of its files say who wrote them
+    return JsonText(std::move(marked), 2) + "\n";
   };
   bool begun = false;
   const InterruptGuard guard;  // until the plan says what there is

@@ -3,26 +3,33 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/command.h"
 #include "app/fit_jobs.h"
 #include "app/flags.h"
 #include "app/interrupt.h"
+#include "app/program.h"
 #include "app/result_folder.h"
 #include "app/solver_flags.h"
 #include "app/study_jobs.h"
 #include "app/study_page.h"
+#include "app/study_record.h"
 #include "core/base/text.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "core/files/text_lines.h"
 #include "fit/study/draw_study.h"
+#include "fit/study/profiles.h"
 #include "fit/study/study.h"
 #include "io/pictures/gnuplot.h"
+#include "model/appearance/verdict.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/io/model_files/model_file.h"
@@ -35,6 +42,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+std::optional<double> NumberOr(const Json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
 // Reads what a fit left.
 void ReadRun(const ResultFolder& folder, StudyRun* run) {
   const std::string path = folder.PathOf("report.json");
@@ -45,11 +56,32 @@ void ReadRun(const ResultFolder& folder, StudyRun* run) {
   for (const char* const phase : {"prepare", "init", "nodes"}) {
     before += seconds.at(phase).get<double>();
   }
-  run->seconds = before + seconds.at("solve").get<double>();
-  if (const Json& sphere = report.at("appearance"); !sphere.is_null()) {
-    if (!sphere.at("psnr_db").is_null()) run->psnr_db = sphere.at("psnr_db").get<double>();
-    run->mean_delta_e = sphere.at("mean_delta_e").get<double>();
+  run->seconds = before + seconds.at("solve").get<double>() -
+                 report.at("phases").at("diagnosing").get<double>();
+  run->samples = report.at("valid_samples");
+  run->parameters = report.at("stored_parameters");
+  run->weighting = report.at("weighting");
+  if (!report.at("diagnosis").is_null()) {
+    run->optimality = NumberOr(report.at("diagnosis").at("optimality"));
   }
+  run->relative_E = NumberOr(report.at("relative_objective"));
+  if (const Json& repeats = report.at("repeats"); !repeats.is_null()) {
+    run->noise_E = NumberOr(repeats.at("relative_objective"));
+  }
+  const Json& verdict = report.at("verdict");
+  run->of_sphere = verdict.at("of") == "sphere";
+  run->psnr_db = NumberOr(verdict.at("psnr_db"));
+  run->mean_delta_e = NumberOr(verdict.at("mean_delta_e"));
+  run->seen = VerdictOf({.mean_delta_e = verdict.at("mean_delta_e"),
+                         .delta_e_95 = verdict.at("delta_e_95")})
+                  .visibility != Visibility::kNone;
+  if (const Json& held_out = report.at("held_out"); !held_out.is_null()) {
+    run->held_out_E = NumberOr(held_out.at("relative_objective"));
+    run->held_out_delta_e = NumberOr(held_out.at("mean_delta_e"));
+  }
+  run->date = report.at("date");
+  run->processor = report.at("machine").at("processor");
+  run->side_by_side = report.at("machine").at("side_by_side");
   run->trace = ReadTrace(folder.PathOf("trace.csv"));
   for (IterationRecord& record : run->trace) record.seconds += before;
   run->file = ReadModel(folder.PathOf("model.json"));
@@ -73,17 +105,75 @@ void MakeRun(StudyJob* job, ResultFolder* folder) {
   ReadRun(*folder, &job->run);
 }
 
+// A number in as few digits as read back to it: gflags gives 0.05 as 0.050000000000000003.
+std::string AsTyped(const std::string& flag, const std::string& value) {
+  if (gflags::GetCommandLineFlagInfoOrDie(flag.c_str()).type != "double") return value;
+  const std::optional<double> number = ToNumber(value);
+  if (!number) return value;
+  char text[32];
+  return {text, std::to_chars(std::begin(text), std::end(text), *number).ptr};
+}
+
 // "trilobe study nylon.binary --runs=3", with the sources as they were typed.
 std::string CommandText(std::span<const std::string> arguments) {
   std::string text = "trilobe study";
   for (const std::string& argument : arguments) text += " " + argument;
   std::vector<std::string> flags = StudyFlags();
-  flags.insert(flags.end(), {"seed", "data_seed", "solvers", "runs", "set"});
-  for (const auto& [flag, value] : GivenFlags(flags)) {
+  flags.insert(flags.end(), {"seed", "data_seed", "solvers", "runs", "set", "threads"});
+  for (const auto& [flag, given] : GivenFlags(flags)) {
+    const std::string value = AsTyped(flag, given);
     const bool plain = value.find_first_of(" ;|&'\"$*?<>()") == std::string::npos;
     text += " --" + flag + "=" + (plain ? value : "'" + value + "'");
   }
   return text;
+}
+
+// "a", or of several "a (3 runs), b (12 runs)".
+template <typename Value>
+std::string ValuesOf(const std::vector<StudyRun>& runs, const Value& value) {
+  std::vector<std::pair<std::string, int>> counts;
+  for (const StudyRun& run : runs) {
+    if (run.failed()) continue;
+    const std::string text = value(run);
+    const auto known = std::ranges::find(counts, text, &std::pair<std::string, int>::first);
+    if (known == counts.end()) {
+      counts.emplace_back(text, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  std::string all;
+  for (const auto& [text, count] : counts) {
+    all += (all.empty() ? "" : ", ") + text;
+    if (counts.size() > 1) all += " (" + std::to_string(count) + (count == 1 ? " run)" : " runs)");
+  }
+  return all;
+}
+
+// Tells readers of a page what its figures depend on.
+std::vector<std::pair<std::string, std::string>> SettingOf(const std::vector<StudyRun>& runs,
+                                                           const std::string& command) {
+  std::string first, last;
+  for (const StudyRun& run : runs) {
+    if (run.failed()) continue;
+    if (first.empty() || run.date < first) first = run.date;
+    last = std::max(last, run.date);
+  }
+  const std::string revision = ProgramRevision();
+  return {{"command", command},
+          {"program", ProgramName() + (revision.empty() ? "" : ", revision " + revision) +
+                          ", build " + ProgramBuild().substr(0, 12)},
+          {"limit of a run", LimitsText()},
+          {"threads", ValuesOf(runs,
+                               [](const StudyRun& run) {
+                                 return run.side_by_side == 1
+                                            ? std::string("1, one run at a time")
+                                            : "1 for each run, " +
+                                                  std::to_string(run.side_by_side) +
+                                                  " runs side by side, which slows each";
+                               })},
+          {"machine", ValuesOf(runs, [](const StudyRun& run) { return run.processor; })},
+          {"date", first == last ? first : first + " to " + last}};
 }
 
 // Draws the figures of all problems; says on standard error if it cannot.
@@ -94,11 +184,12 @@ void DrawFigures(const std::vector<StudyRun>& runs, const std::string& out, int 
     return;
   }
   struct Task {
-    std::string problem;
+    std::string problem;  // "": all
     const StudyFigure* figure;
     bool drawn = false;
   };
   std::vector<Task> tasks;
+  for (const StudyFigure& figure : ProfileFigures()) tasks.push_back({"", &figure});
   for (const std::string& problem : ProblemsOf(runs)) {
     for (const StudyFigure& figure : StudyFigures()) tasks.push_back({problem, &figure});
   }
@@ -107,6 +198,10 @@ void DrawFigures(const std::vector<StudyRun>& runs, const std::string& out, int 
   ParallelJobs(static_cast<int>(tasks.size()), threads, [&](int k) {
     Task& task = tasks[k];
     try {
+      if (task.problem.empty()) {
+        task.drawn = DrawStudyFigure(*task.figure, runs, out);
+        return;
+      }
       const std::vector<StudyRun> own = RunsOn(task.problem, runs);
       const std::string folder = out + "/" + contents->folder_of.at(task.problem);
       MakeDirectories(folder);
@@ -117,7 +212,9 @@ void DrawFigures(const std::vector<StudyRun>& runs, const std::string& out, int 
     }
   });
   for (const Task& task : tasks) {
-    if (task.drawn) contents->figures[task.problem].push_back(task.figure);
+    if (!task.drawn) continue;
+    (task.problem.empty() ? contents->profiles : contents->figures[task.problem])
+        .push_back(task.figure);
   }
   if (!failure.empty()) {
     std::cerr << "trilobe: pictures are missing: " << Printable(failure) << "\n";
@@ -133,6 +230,7 @@ void PrintStudy(const std::vector<StudyRun>& runs) {
                          [&](const MethodSummary& of) { return of.problem == problem; });
     std::cout << "\n" << Printable(problem) << "\n" << MethodsText(own);
   }
+  if (problems.size() > 1) std::cout << "\n" << TimesTextOf(runs);
   std::cout << "\n";
   for (const std::string& sentence : VerdictOn(runs)) std::cout << Printable(sentence) << "\n";
 }
@@ -142,13 +240,14 @@ void Gather(std::vector<StudyJob> jobs, std::span<const std::string> arguments,
             const ResultFolder& summary) {
   std::vector<StudyRun> runs;
   StudyPageContents contents;
-  contents.command = CommandText(arguments);
-  contents.tables = {kRunsName, kMethodsName, kTracesName};
   for (StudyJob& job : jobs) {
     contents.folder_of[job.run.problem] = job.folder_of_problem;
     runs.push_back(std::move(job.run));
   }
   CompareRuns(&runs);
+  contents.setting = SettingOf(runs, CommandText(arguments));
+  contents.tables = {kRunsName, kMethodsName, kTracesName};
+  if (ProblemsOf(runs).size() >= kFewestProblems) contents.tables.emplace_back(kProfilesName);
   DrawFigures(runs, summary.path(), ThreadsFromFlags(), &contents);
   const auto write = [&](const char* name, const std::string& text) {
     WriteFile(summary.PathOf(name), [&](std::ostream& out) { out << text; });
@@ -156,6 +255,7 @@ void Gather(std::vector<StudyJob> jobs, std::span<const std::string> arguments,
   write(kRunsName, RunsCsv(runs));
   write(kMethodsName, MethodsCsv(SummariesOf(runs)));
   write(kTracesName, TracesCsv(runs));
+  if (contents.tables.size() > 3) write(kProfilesName, ProfilesCsv(runs));
   write(kStudyPageName, StudyPage(runs, contents));
   PrintStudy(runs);
 }
@@ -172,6 +272,19 @@ void PrintRun(const StudyJob& job, size_t done, size_t count) {
   std::cout << std::endl;
 }
 
+// Throws Error where the figures may not be written.
+void CheckFigures(const std::vector<StudyJob>& jobs, const std::string& out, const Inputs& inputs) {
+  std::set<std::string> folders;
+  for (const StudyJob& job : jobs) folders.insert(job.folder_of_problem);
+  for (const std::string& folder : folders) {
+    for (const StudyFigure& figure : StudyFigures()) {
+      for (const char* const ending : {".svg", ".pdf"}) {
+        inputs.CheckOutput(out + "/" + folder + "/" + figure.name + ending);
+      }
+    }
+  }
+}
+
 int RunStudy(std::span<const std::string> arguments) {
   const std::string out = FLAGS_out.empty() ? "out/study" : FLAGS_out;
   std::vector<StudyJob> jobs = StudyJobsFromFlags(arguments);
@@ -183,16 +296,21 @@ int RunStudy(std::span<const std::string> arguments) {
   const Inputs inputs(read);
   std::vector<ResultFolder> folders;
   for (const StudyJob& job : jobs) {
-    folders.emplace_back(out + "/" + job.run.folder, FitFileNames(), FitFolderMarks(), inputs);
+    folders.emplace_back(out + "/" + job.run.folder, FitFileNames(), inputs);
   }
   const std::vector<std::string> names(std::begin(kFilesOfStudy), std::end(kFilesOfStudy));
-  const ResultFolder summary(out, names, names, inputs);
+  const ResultFolder summary(out, names, inputs);
+  if (FLAGS_shard.empty()) CheckFigures(jobs, out, inputs);
+  if (!FLAGS_force) CheckSameStudy(out, jobs);
   summary.Open();
+  WriteFile(summary.PathOf(kStudyRecordName),
+            [&](std::ostream& record) { record << StudyRecord(jobs, CommandText(arguments)); });
 
   const std::vector<size_t> shard = JobsOfShard(jobs.size());
   const InterruptGuard guard;
   MakeJobs(
-      shard.size(), "runs", [&](size_t k) -> FitOutcome& { return jobs[shard[k]].outcome; },
+      shard.size(), RunsAtOnce(), "runs",
+      [&](size_t k) -> FitOutcome& { return jobs[shard[k]].outcome; },
       [&](size_t k) { MakeRun(&jobs[shard[k]], &folders[shard[k]]); },
       [&](size_t k, size_t done) {
         StudyJob& job = jobs[shard[k]];
@@ -228,15 +346,20 @@ Command StudyCommand() {
           .max_arguments = std::numeric_limits<int>::max(),
           .details =
               "Fits each SOURCE, or each measurement of a folder, by each of the solvers from each "
-              "of the starts, on\none thread each, and compares: who finds the lowest E, how "
-              "often, how soon, whether E ever rose, whether\nthe lobes are the same, and whether "
-              "it looks better. Models are what the solvers found (--raw); --noraw\nadds what "
-              "`fit` does after them. Writes DIR/index.html (a page), DIR/runs.csv, methods.csv "
-              "and traces.csv,\nDIR/PROBLEM/*.svg and *.pdf (figures), and a folder for each run, "
-              "as `fit` does. Without --out DIR is\nout/study. Ctrl-C keeps what is finished; the "
-              "same command goes on, and fits again only what has\nchanged. --shard=i/n shares the "
-              "runs out between machines (docs/study.md).",
+              "of the starts, and\ncompares: who finds the lowest E, how often, how soon, whether "
+              "E ever rose, whether the lobes are the\nsame, and whether it looks better. Each run "
+              "has one thread and 30 seconds, unless --max_seconds or\n--max_iterations says "
+              "otherwise. One runs at a time, so that times can be compared; --threads=N runs N\n"
+              "side by side. Where --set varies the form of the model, samples are held out "
+              "(--held_out). Models are\nwhat the solvers found (--raw); --noraw adds what `fit` "
+              "does after them. Writes DIR/index.html (a page),\nDIR/runs.csv, methods.csv, "
+              "traces.csv and, of three problems or more, profiles.csv,\nDIR/PROBLEM/*.svg and "
+              "*.pdf (figures), and a folder for each run, as `fit` does. Without --out DIR is\n"
+              "out/study. Ctrl-C keeps what is finished; the same command goes on, and fits again "
+              "only what has\nchanged. --shard=i/n shares the runs out between machines "
+              "(docs/study.md).",
           .flags = flags,
+          .other_names = {{"starts", "runs"}},
           .run = RunStudy};
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
+#include <map>
+#include <ranges>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "app/fit_jobs.h"
@@ -22,7 +24,8 @@ DEFINE_string(solvers, "auto,awls,lm", "the solvers to compare, by name");
 DEFINE_int32(
     runs, 5,
     "runs of each solver on each problem: the first from the start --init, the others from "
-    "random ones, --init=random with the seeds that follow --seed");
+    "random ones, --init=random with the seeds that follow --seed; --starts is another name of it");
+DECLARE_bool(held_out);
 DEFINE_string(set, "",
               "FLAG=a,b,c: run with each of these values of a flag of `fit`; several flags are "
               "separated by ; and values with commas in them by |. A flag that only some solvers "
@@ -132,14 +135,41 @@ void SetFlag(const std::string& flag, const std::string& value) {
   }
 }
 
+// The solver's time in each run, so that methods have the same, unless --max_iterations or
+// --max_seconds says otherwise.
+constexpr const char* kSeconds = "30";
+constexpr const char* kIterations = "1000000000";  // as many as that time allows
+
+// Whether a flag is given, or is among those that are varied.
+bool IsSet(const std::string& flag, const Values& values) {
+  const auto names = std::views::keys(values);
+  return !IsDefault(flag) || std::ranges::find(names, flag) != names.end();
+}
+
+void SetLimits(const Values& values) {
+  if (IsSet("max_iterations", values)) return;
+  SetFlag("max_iterations", kIterations);
+  if (!IsSet("max_seconds", values)) SetFlag("max_seconds", kSeconds);
+}
+
+// Whether the flag changes how many numbers a model has, or what they are of.
+bool ChangesForm(const std::string& flag) {
+  const std::vector<std::string> flags = ModelFlags();
+  return flag == "max_parameters" || std::ranges::find(flags, flag) != flags.end();
+}
+
 // The settings of `trilobe fit` with these flags.
 FitSettings SettingsOf(const std::string& solver, const Values& values, int start) {
   const gflags::FlagSaver as_given;
   if (IsDefault("data_seed")) SetFlag("data_seed", std::to_string(FLAGS_seed));  // for all starts
   SetFlag("solver", solver);
+  SetLimits(values);
+  // A larger form has a lower E on what it was fitted to.
+  const bool changes_form = std::ranges::any_of(std::views::keys(values), ChangesForm);
+  if (IsDefault("held_out") && changes_form) SetFlag("held_out", "true");
+  for (const auto& [flag, value] : values) SetFlag(flag, value);
   // What a solver found, without what would follow it. As to auto's choice of a form, that is it.
   if (IsDefault("raw") && !ChoosesModel()) SetFlag("raw", "true");
-  for (const auto& [flag, value] : values) SetFlag(flag, value);
   if (start > 1) {
     SetFlag("init", "random");
     SetFlag("seed", std::to_string(FLAGS_seed + start - 1));
@@ -147,12 +177,39 @@ FitSettings SettingsOf(const std::string& solver, const Values& values, int star
   return FitSettingsFromFlags();
 }
 
-// What follows the name of a source or a solver, as the end of the name of its folder.
-std::string AsName(std::string labels) {
-  std::ranges::replace(labels, '/', '_');
-  std::ranges::replace(labels, ' ', ',');
-  return labels;
+// The name of a folder that needs no quotes in a shell: letters, digits, and the other characters
+// that mean nothing there; "copper-log-noise-0.05" of "copper log noise:0.05".
+std::string AsName(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' ||
+                       static_cast<unsigned char>(c) >= 0x80;  // of letters in UTF-8
+    if (plain) {
+      name += c;
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  while (name.ends_with('-')) name.pop_back();
+  while (name.starts_with('.')) name.erase(0, 1);
+  return name.empty() ? "unnamed" : name;
 }
+
+// Another folder for another text whose name is the same but for what means something in a shell.
+class FolderNames {
+ public:
+  std::string NameOf(const std::string& text) {
+    if (const auto known = name_of_.find(text); known != name_of_.end()) return known->second;
+    const std::string plain = AsName(text);
+    std::string name = plain;
+    for (int k = 2; !taken_.insert(name).second; ++k) name = plain + "-" + std::to_string(k);
+    return name_of_[text] = name;
+  }
+
+ private:
+  std::map<std::string, std::string> name_of_;
+  std::set<std::string> taken_ = {std::begin(kFilesOfStudy), std::end(kFilesOfStudy)};
+};
 
 // Throws Error where nothing is to be read.
 void CheckSource(const std::string& source) {
@@ -161,14 +218,8 @@ void CheckSource(const std::string& source) {
   throw Error("cannot read '" + source + "': no such file");
 }
 
-// Throws Error for a folder that is taken.
-void CheckFolder(const StudyJob& job, std::set<std::string>* folders) {
-  for (const char* const taken : kFilesOfStudy) {
-    if (job.folder_of_problem == taken) {
-      throw Error("'" + job.folder_of_problem +
-                  "' is the name of a file of the study; rename the source");
-    }
-  }
+// Throws Error for a run that there is already.
+void CheckNew(const StudyJob& job, std::set<std::string>* folders) {
   if (!folders->insert(job.run.folder).second) {
     throw Error("'" + job.run.problem + "' by '" + job.run.method +
                 "' is asked for twice; name each solver and value once");
@@ -176,6 +227,21 @@ void CheckFolder(const StudyJob& job, std::set<std::string>* folders) {
 }
 
 }  // namespace
+
+int RunsAtOnce() { return IsDefault("threads") ? 1 : ThreadsFromFlags(); }
+
+std::string LimitsText() {
+  std::string text;
+  for (const auto& [flag, value] : GivenFlags({"max_iterations", "max_seconds"})) {
+    text += (text.empty() ? "--" : " --") + flag + "=" + value;
+  }
+  if (!text.empty()) return text;
+  if (FLAGS_set.find("max_iterations") != std::string::npos ||
+      FLAGS_set.find("max_seconds") != std::string::npos) {
+    return "by --set";
+  }
+  return std::string(kSeconds) + " s of each solver, by the clock (--max_seconds)";
+}
 
 std::vector<StudyJob> StudyJobsFromFlags(std::span<const std::string> arguments) {
   if (FLAGS_runs < 1 || FLAGS_runs > 10000) throw Error("--runs must be from 1 to 10000");
@@ -189,6 +255,9 @@ std::vector<StudyJob> StudyJobsFromFlags(std::span<const std::string> arguments)
   const int runs = varies_start ? 1 : FLAGS_runs;
   std::vector<StudyJob> jobs;
   std::set<std::string> folders, told;
+  FolderNames problem_names;
+  std::map<std::string, FolderNames> method_names;  // by problem
+  const int at_once = RunsAtOnce();
   for (const FitOutcome& source : ListSources(arguments)) {
     CheckSource(source.source);
     for (const SolverEntry* solver : solvers) {
@@ -204,10 +273,12 @@ std::vector<StudyJob> StudyJobsFromFlags(std::span<const std::string> arguments)
                      .method = solver->name + of_method,
                      .start = start,
                      .folder = ""};
-          job.folder_of_problem = source.name + AsName(of_problem);
-          job.run.folder = job.folder_of_problem + "/" + solver->name + AsName(of_method) +
-                           "/start-" + std::to_string(start);
-          CheckFolder(job, &folders);
+          job.settings.side_by_side = at_once;
+          job.folder_of_problem = problem_names.NameOf(job.run.problem);
+          job.run.folder = job.folder_of_problem + "/" +
+                           method_names[job.run.problem].NameOf(job.run.method) + "/start-" +
+                           std::to_string(start);
+          CheckNew(job, &folders);
           // Of the runs on the same data, the first tells what was noticed of them.
           job.settings.tell_notes = told.insert(job.folder_of_problem).second;
           job.outcome = {.name = job.run.folder, .source = source.source};

@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fit/study/draw_study.h"
@@ -13,19 +14,24 @@ namespace trilobe {
 
 // What the page of a study shows besides its runs.
 struct StudyPageContents {
-  std::string command;              // that makes it again
-  std::vector<std::string> tables;  // names of the CSV files beside it
+  // How it was made: program, command, limits, threads, machine, date; each with its name.
+  std::vector<std::pair<std::string, std::string>> setting;
+  std::vector<std::string> tables;           // names of the CSV files beside it
+  std::vector<const StudyFigure*> profiles;  // of all problems, NAME.svg and .pdf, if drawn
   // Figures that have been drawn, by problem; FOLDER/NAME.svg and .pdf.
   std::map<std::string, std::vector<const StudyFigure*>> figures;
   std::map<std::string, std::string> folder_of;  // of each problem
 };
 
-// HTML page: the verdict, and for each problem a table of methods, the figures, and links to the
-// runs.
+// HTML page: the verdict; for each problem the tables of methods, the figures, and links to the
+// runs; what the columns say; and how it was made.
 std::string StudyPage(std::span<const StudyRun> runs, const StudyPageContents& contents);
 
-// A table of the methods of one problem, for a terminal.
+// The tables of the methods of one problem, for a terminal.
 std::string MethodsText(std::span<const MethodSummary> summaries);
+
+// A table of how soon methods come within 1 % of the lowest E on each of several problems.
+std::string TimesTextOf(std::span<const StudyRun> runs);
 
 }  // namespace trilobe
 

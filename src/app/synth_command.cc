@@ -28,10 +28,10 @@ int RunSynth(std::span<const std::string> arguments) {
   const std::string source = "synth:" + arguments[0];
   const SynthMaterial& material = SynthSourceOf(source).material;
   const std::string out = RequiredMeasurementOut("synth");
-  Inputs().CheckOutput(out);
+  Inputs().CheckOutput(out, CheckMayReplaceMeasurement);
   SourceOptions options = SourceOptionsFromFlags();
-  options.outliers = options.dark_noise = true;  // what was asked for is written
-  WriteMeasurement(LoadMeasurement(source, options), out, options.num_threads);
+  options.as_they_are = true;
+  ReplaceMeasurement(LoadMeasurement(source, options), out, options.num_threads);
   PrintLine("wrote " + out + ": " + material.description + ", noise " + Text(options.noise) +
             ", seed " + std::to_string(options.seed));
   return 0;

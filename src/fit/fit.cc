@@ -12,6 +12,7 @@
 #include "fit/finish/limit_light.h"
 #include "fit/guess_error.h"
 #include "fit/held_out.h"
+#include "fit/held_out_fit.h"
 #include "fit/samples_to_fit.h"
 #include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
@@ -201,6 +202,17 @@ class Fitting {
     }
     if (options_.compare) Compare(fit);
     fit->seconds.score = stopwatch_.Lap();
+    if (options_.held_out && !options_.stop()) {
+      fit->held_out =
+          FitWithoutHeldOut(measurement_, options_, fit->model().spec(),
+                            [&](const FitOptions& options) -> std::optional<FactorModel> {
+                              FitResult part = Fitting(measurement_, options).Run();
+                              if (part.interrupted || part.finished.too_few_to_choose > 0)
+                                return {};
+                              return std::move(part.file.model);
+                            });
+      fit->seconds.held_out = stopwatch_.Lap();
+    }
     fit->interrupted = options_.stop();
   }
 
@@ -359,6 +371,7 @@ class Fitting {
     if (!measurement_.table) {
       fit->reach = ReachOf(fit->objective.samples(), fit->model(), options_.num_threads);
     }
+    fit->repeats = NoiseOfRepeats(fit->objective);
     fit->measured_share = MeasuredShare(fit->objective.samples());
     if (measurement_.table && fit->appearance) {
       fit->whole = EstimateWholeSphere(fit->objective, fit->model(), fit->measured_share,

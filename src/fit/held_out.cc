@@ -59,6 +59,12 @@ FactorModel FitToAll(const Objective& solved, const ChosenModel& chosen, const S
 
 }  // namespace
 
+bool HeldOutPart::CanDivide(const BrdfSamples& measured, uint64_t seed) {
+  int held = 0;
+  for (int j = 0; j < measured.size(); ++j) held += IsHeldOut(measured.Angles(j), seed) ? 1 : 0;
+  return held > 0 && held < measured.size();
+}
+
 HeldOutPart::HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_threads)
     : num_measured_(measured.size()), num_threads_(num_threads) {
   std::vector<int> held;
@@ -73,17 +79,18 @@ HeldOutPart::HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_thr
   held_ = Selected(measured, held);
 }
 
+BrdfSamples HeldOutPart::RemoveFrom(const BrdfSamples& samples) const {
+  std::vector<int> numbers = kept_;
+  for (int j = num_measured_; j < samples.size(); ++j) numbers.push_back(j);
+  return Selected(samples, numbers);
+}
+
 Objective HeldOutPart::RemoveFrom(const Objective& objective) const {
-  const auto part = [&](const BrdfSamples& samples) {
-    std::vector<int> numbers = kept_;
-    for (int j = num_measured_; j < samples.size(); ++j) numbers.push_back(j);
-    return Selected(samples, numbers);
-  };
   const auto of_part = [&](const Objective& whole) -> Objective {
-    return {part(whole.samples()), whole.spec(), whole.weighting(), whole.num_threads()};
+    return {RemoveFrom(whole.samples()), whole.spec(), whole.weighting(), whole.num_threads()};
   };
   if (!objective.has_prior()) return of_part(objective);
-  return {of_part(objective.data()), part(objective.samples())};
+  return {of_part(objective.data()), RemoveFrom(objective.samples())};
 }
 
 double HeldOutPart::Score(const FactorModel& model) const {

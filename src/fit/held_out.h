@@ -21,12 +21,17 @@ class HeldOutPart {
   // samples.
   HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_threads);
 
+  // Whether there would be both samples that are held out and others.
+  static bool CanDivide(const BrdfSamples& measured, uint64_t seed);
+
   int size() const { return held_.size(); }
   const BrdfSamples& samples() const { return held_; }
 
   // The objective without the held-out samples. Its first samples must be the measured ones; those
   // of a prior follow and stay.
   Objective RemoveFrom(const Objective& objective) const;
+  // The same of samples.
+  BrdfSamples RemoveFrom(const BrdfSamples& samples) const;
 
   // Score of a model on the held-out samples [dB] (CompareSamples).
   double Score(const FactorModel& model) const;

@@ -157,8 +157,9 @@ double Axis::Cell::SolidAngle() const {
 Axis::Cell Axis::CellOf(int entry) const {
   CheckEntry(*this, entry);
   if (!polar()) {
-    const MerlGrid grid{.theta_h = size};
-    return {grid.ThetaH(entry), grid.ThetaH(entry + 1), 2 * kPi};
+    const MerlGrid grid{.theta_h = size, .theta_d = size};
+    if (rule == Rule::kRootTheta) return {grid.ThetaH(entry), grid.ThetaH(entry + 1), 2 * kPi};
+    return {grid.ThetaD(entry), grid.ThetaD(entry + 1), 2 * kPi};
   }
   const int a = entry / phi_nodes, last = static_cast<int>(theta.size()) - 1;
   const double inner = a > 0 ? theta[a] - theta[a - 1] : last > 0 ? theta[1] - theta[0] : 180;

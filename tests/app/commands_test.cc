@@ -296,7 +296,7 @@ TEST(ConvertTest, MarksWhatWasNotMeasured) {
   const TemporaryFolder folder;
   Write(folder / "tiny.bsdf", MaskedRgl());
   const auto valid_after = [&](const std::vector<std::string>& flags) {
-    std::vector<std::string> words = {"convert", folder / "tiny.bsdf",
+    std::vector<std::string> words = {"convert", folder / "tiny.bsdf", "--force",
                                       "--out=" + (folder / "merl")};
     words.insert(words.end(), flags.begin(), flags.end());
     EXPECT_EQ(RunProgram(words).status, 0);

@@ -104,7 +104,8 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_NEAR(shares, 1, 1e-12);
   for (const char* const line :
        {"appearance   sphere in studio", "solver       awls: 3 iterations",
-        "options      max_iterations 3", "phases       ", "error        E is "}) {
+        "of a black model's, its scaled gradient ", "options      max_iterations 3",
+        "phases       ", "error        E is "}) {
     EXPECT_THAT(result.out, HasSubstr(line));
   }
 
@@ -284,6 +285,23 @@ TEST(Fit, FitsTheOneLobeModelThatSharesNothing) {
   ASSERT_EQ(RunProgram(Fit(folder / "out", {"--model=independent"})).status, 0);
   EXPECT_EQ(ReadModel(folder / "out/model.json").model.spec().num_parameters(),
             276);  // 92 a channel
+}
+
+TEST(Fit, TellsWhatTheMeasurementLacksOfReciprocityWhereThatIsMuch) {
+  const TemporaryFolder folder;
+  const auto told = [&](const std::string& noise) {
+    const ProgramResult result = RunProgram({"fit", "synth:plastic@20x20x40", "--noise=" + noise,
+                                             "--solver=awls", "--max_iterations=20", "--nodiagnose",
+                                             "--noplots", "--verbose", "--out=" + folder / noise});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const nlohmann::json report = Json(folder / noise + "/report.json");
+    const double share =
+        report["irreducible_objective"].get<double>() / report["objective"].get<double>();
+    EXPECT_EQ(result.out.find("\nreciprocity ") != std::string::npos, share >= 0.1) << share;
+    return share;
+  };
+  EXPECT_GT(told("0.1"), 0.1);
+  EXPECT_LT(told("0"), 0.1);
 }
 
 TEST(Fit, AutoChoosesAModelWithinTheBudget) {

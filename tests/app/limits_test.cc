@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -77,6 +78,18 @@ TEST(Limits, MoreThreadsThanCoresAreNoneOfUse) {
   EXPECT_TRUE(IsOneLine(result.err)) << result.err;
   EXPECT_THAT(result.err,
               HasSubstr("using " + std::to_string(std::thread::hardware_concurrency())));
+}
+
+// Some files of the system are regular by name, and who reads them waits until there is more.
+TEST(Limits, AFolderOfSpecialFilesIsReadAtOnce) {
+  const TemporaryFolder folder;
+  const std::string data = folder / "data";
+  std::filesystem::create_directory(data);
+  ASSERT_EQ(mkfifo((data + "/pipe").c_str(), 0600), 0);
+  for (const std::string& source : {std::string("/proc"), data}) {
+    const ProgramResult result = RunProgram({"fit", source, "--out=" + (folder / "out")});
+    EXPECT_TRUE(result.status == 1 || result.status == 3) << source << ": " << result.err;
+  }
 }
 
 }  // namespace

@@ -193,15 +193,6 @@ TEST(Outputs, APictureOfAMeasurementDoesNotReplaceIt) {
   EXPECT_GT(std::filesystem::file_size(file), 30e6);
 }
 
-// Names that a run uses are common ones; without a run of ours in the folder they are somebody's.
-TEST(FitFolder, LeavesFilesOfNoRunAlone) {
-  const TemporaryFolder folder;
-  std::ofstream(folder / "convergence.csv") << "mine";
-  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + (folder / "")})),
-                "convergence.csv' is not of a run of this command");
-  EXPECT_EQ(Contents(folder / "convergence.csv"), "mine");
-}
-
 TEST(Outputs, AreCheckedBeforeTheWork) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "model.json");

@@ -66,10 +66,18 @@ TEST_F(PreviousModel, IsNotKeptWhereTheSameIsFitted) {
   EXPECT_FALSE(HasPrevious());
 }
 
-TEST_F(PreviousModel, StaysWhateverItIs) {
+TEST_F(PreviousModel, StaysWhateverItIsIfForced) {
   std::filesystem::create_directory(out_);
   std::ofstream(out_ + "/model.json") << "no model";
+  Fit({"--lobes=1", "--force"});
+  EXPECT_EQ(Contents(out_ + "/model.previous.json"), "no model");
+  // It is in the way of the next model that is to be kept, and of no other.
   Fit({"--lobes=1"});
+  const ProgramResult refused =
+      RunProgram({"fit", "synth:felt@12x12x24", "--lobes=2", "--out=" + out_});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err,
+              HasSubstr("model.previous.json' exists, and Trilobe has not written it"));
   EXPECT_EQ(Contents(out_ + "/model.previous.json"), "no model");
 }
 

@@ -362,7 +362,7 @@ TEST(Scene, ItsFolderHoldsOneScene) {
   std::ofstream(out + "/plan.json") << R"({"plan": "of somebody"})";
   const ProgramResult refused = fit("fourth");
   EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, HasSubstr("is not a plan of `trilobe fit --scene`"));
+  EXPECT_THAT(refused.err, HasSubstr("plan.json' exists, and Trilobe has not written it"));
 }
 
 TEST(Scene, DoesNotOverwriteItsOwnFiles) {

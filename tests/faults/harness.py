@@ -6,12 +6,15 @@
 Each trial draws a command, what lies in its folder before, and a fault: a signal (once or twice, at a
 random time or at the very moment when a file appears), a disk that is too small, a folder without write
 permission, a gnuplot that is missing, fails or stops half way, a cache whose entries were swapped
-or torn. After it, these must hold (docs/reliability.md):
+or torn, files of others in the place of those that a command writes. After it, these must hold
+(docs/reliability.md):
 
   - a folder holds the files of one run: those of the earlier one, untouched, or those of the new one;
     where there is a report (a plan), all files that it names are there, and no others of the kind;
   - a signal that comes when a model exists leaves that model on disk, unless it was SIGKILL;
   - inputs have the bytes that they had;
+  - files that the program has not written have theirs, and the command names one of them, unless it is told
+    to --force its way;
   - what went wrong is told in one line, and the exit status is not 0, unless
     only pictures are missing;
   - the same command without the fault succeeds, and leaves no temporary file of any run.
@@ -22,7 +25,6 @@ import collections
 import contextlib
 import ctypes
 import glob
-import hashlib
 import json
 import os
 import random
@@ -33,47 +35,27 @@ import sys
 import tempfile
 import time
 
+import others_files
+from others_files import QUICK, Broken, require, snapshot
+
 KEPT = ".previous.json"  # a model of the earlier run, which stays beside the new one
 FIT_FILES = {"model.json", "trace.csv", "report.json", "convergence.csv", "reconstruction.binary", "factors.png",
              "slices.png", "spheres.png", "trace.png", "pair.png", "view.html"}
-QUICK = ["--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=20"]
 # The pictures, and the score, take a tenth of the time under six lights instead of 600.
 ENVIRONMENT = {"TRILOBE_TEST_LIGHTS": "6"}
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 # With these root reads and writes what its owner may not: CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH.
 OVERRIDES = [1, 2]
 PR_CAPBSET_DROP = 24
+# How often each is drawn.
+FAULTS = {"signal": 10, "signals": 4, "disk": 4, "permission": 1, "gnuplot": 2, "cache": 2, "others' files": 4}
 LIBC = ctypes.CDLL(None)
-
-
-class Broken(Exception):
-    """A promise that was not kept."""
 
 
 def obey_permissions():
     """Root's next program is held to the permissions of files, as anybody else is anyway."""
     for capability in OVERRIDES:
         LIBC.prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)
-
-
-def require(holds, what):
-    if not holds:
-        raise Broken(what)
-
-
-def content(path):
-    with open(path, "rb") as file:
-        return hashlib.sha256(file.read()).hexdigest()
-
-
-def snapshot(folder):
-    """Hashes of the files below a folder, by relative path."""
-    found = {}
-    for root, _, names in os.walk(folder):
-        for name in names:
-            path = os.path.join(root, name)
-            found[os.path.relpath(path, folder)] = content(path)
-    return found
 
 
 def temporaries(folder):
@@ -153,9 +135,10 @@ class Command:
 
 
 class Harness:
-    def __init__(self, program, seed):
+    def __init__(self, program, seed, only=None):
         self.program = os.path.abspath(program)
         self.random = random.Random(seed)
+        self.only = only
         self.counts = collections.Counter()
         self.skipped = collections.Counter()
 
@@ -174,6 +157,8 @@ class Harness:
                            stdout=subprocess.DEVNULL)
             self.scene = self._scene("scene.json", {"wall": "synth:rubber@30x30x60", "pot": "copper.binary"})
             self.other_scene = self._scene("other.json", {"wall": "synth:felt@30x30x60", "door": "synth:rubber@30x30x60"})
+            self.model = os.path.join(room, "model")
+            self.succeed(["fit", "synth:felt@12x12x24", *QUICK[:-1], "--noplots", f"--out={self.model}"])
             self.inputs = snapshot(room)
             yield
 
@@ -208,12 +193,15 @@ class Harness:
     # -- one trial --
 
     def trial(self):
-        fault = self.random.choices(["signal", "signals", "disk", "permission", "gnuplot", "cache"],
-                                    [10, 4, 4, 1, 2, 2])[0]
+        fault = self.only or self.random.choices(list(FAULTS), list(FAULTS.values()))[0]
         kind = {"gnuplot": "one", "cache": "scene"}.get(fault) or self.random.choice(["one", "many", "scene"])
         with contextlib.ExitStack() as stack:
             self.room = stack.enter_context(tempfile.TemporaryDirectory(prefix="room-", dir=self.base))
             os.chmod(self.room, 0o777)
+            if fault == "others' files":
+                self.counts[f"{fault}: {others_files.trial(self)}"] += 1
+                self.require_inputs()
+                return
             command = Command(self, kind)
             if fault == "disk" and not self.mount(command.out, "64m", stack):
                 self.skipped["disk: needs root"] += 1
@@ -224,14 +212,17 @@ class Harness:
                 before = snapshot(command.out)
                 dropped = {folder: command.result(folder)[0] for folder in command.folders}
             label = getattr(self, "fault_" + fault)(command, before, dropped, stack)
-            left = snapshot(self.base)
-            for name, digest in self.inputs.items():
-                require(left.get(name) == digest, f"the input {name} was touched")
+            self.require_inputs()
             self.succeed(command.words)
             for folder in command.folders:
                 require(command.result(folder)[1], "the run after the fault left no complete result")
             require(not temporaries(self.room), f"temporary files are left: {temporaries(self.room)}")
             self.counts[f"{fault}: {label}, {kind}"] += 1
+
+    def require_inputs(self):
+        left = snapshot(self.base)
+        for name, digest in self.inputs.items():
+            require(left.get(name) == digest, f"the input {name} was touched")
 
     # -- faults: each breaks a run, checks what is particular to it, and returns a name for the table --
 
@@ -389,8 +380,9 @@ def main():
     parser.add_argument("--trials", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="begin with this trial, to repeat one that failed")
+    parser.add_argument("--fault", choices=FAULTS, help="no other than this")
     options = parser.parse_args()
-    harness = Harness(options.program, options.seed)
+    harness = Harness(options.program, options.seed, options.fault)
     # Started in the background of a script, it would ignore Ctrl-C; stopped, it prints what it has.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)

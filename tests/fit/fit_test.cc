@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/held_out.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 
@@ -54,6 +55,49 @@ TEST(Fit, TellsOfItsModelAndHowFarItIs) {
   options.on_model = nullptr;
   options.stop = nullptr;
   EXPECT_EQ(Parameters(fit), Parameters(Fit(measured, options)));
+}
+
+TEST(Fit, IsHeldAgainstSamplesThatItHasNotSeen) {
+  const Measurement measured = LoadMeasurement("synth:plastic@12x12x24", {.noise = 0.1});
+  FitOptions options = Quick();
+  options.raw = true;
+  const FitResult all = Fit(measured, options);
+  EXPECT_FALSE(all.held_out);
+  options.held_out = 1;
+  const FitResult fit = Fit(measured, options);
+  ASSERT_TRUE(fit.held_out);
+  EXPECT_EQ(Parameters(fit), Parameters(all));  // is of all samples as before
+
+  // By hand: the same fit to what is left, at what is not.
+  const BrdfSamples samples = SamplesOf(measured);
+  const HeldOutPart part(samples, 1, 1);
+  options.held_out.reset();
+  options.select = [&](const BrdfSamples& whole) { return part.RemoveFrom(whole); };
+  const FactorModel model = Fit(measured, options).model();
+  const Objective held(part.samples(), model.spec(), options.weighting);
+  EXPECT_EQ(fit.held_out->samples, part.size());
+  EXPECT_NEAR(fit.held_out->objective, held.Value(model), 1e-12 * held.Value(model));
+  EXPECT_NEAR(fit.held_out->relative_objective, held.Value(model) / held.MeasuredEnergy(), 1e-12);
+  EXPECT_GT(fit.held_out->mean_delta_e, 0);
+}
+
+TEST(Fit, ChoosesAFormWithoutTheHeldOutSamples) {
+  const Measurement measured = LoadMeasurement("synth:copper@20x20x40", {.noise = 0.05});
+  FitOptions options = Quick();
+  options.choose_form = true;
+  options.held_out = options.seed;
+  options.max_parameters = 200;
+  const FitResult fit = Fit(measured, options);
+  ASSERT_TRUE(fit.held_out);
+  EXPECT_LT(fit.held_out->relative_objective, 1);
+}
+
+TEST(Fit, HoldsNothingOutOfTooFewSamples) {
+  Measurement measured = LoadMeasurement("synth:plastic@12x12x24");
+  FitOptions options = Quick();
+  options.held_out = 1;
+  options.select = [](const BrdfSamples& all) { return Selected(all, {5, 6}); };
+  EXPECT_FALSE(Fit(measured, options).held_out);
 }
 
 // After a solver that has come to the end, so that E cannot but rise.

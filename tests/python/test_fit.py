@@ -181,6 +181,21 @@ def test_takes_the_materials_that_come_along(plastic):
         trilobe.load("material:linnen")
 
 
+def test_matches_lobes(fitted, tmp_path):
+    brdf = fitted.model
+    turned = brdf.replace(s=brdf.s[::-1] * 4, D=brdf.D[::-1] / 4, G=brdf.G[::-1])
+    same = trilobe.match_lobes(brdf, turned)
+    assert same.lobe == list(range(brdf.lobes))[::-1]
+    assert same.agreement == pytest.approx(1) and same.match == pytest.approx([1] * brdf.lobes)
+    stronger = brdf.replace(s=brdf.s * 5)
+    stronger.save(tmp_path / "stronger.json")
+    assert trilobe.match_lobes(brdf, tmp_path / "stronger.json").agreement == pytest.approx(0.2)
+    fewer = trilobe.Brdf(brdf.d, brdf.s[:1], brdf.D[:1], brdf.F, brdf.G[:1])
+    assert trilobe.match_lobes(brdf, fewer).lobe == [0] + [-1] * (brdf.lobes - 1)
+    with pytest.raises(trilobe.Error, match="same sharing and axes"):
+        trilobe.match_lobes(isotropic(), isotropic(60))
+
+
 def test_lists():
     solvers = trilobe.solvers()
     assert solvers[0].name == "auto"
@@ -299,6 +314,13 @@ def test_fits_many(tmp_path, monkeypatch):
     assert (tmp_path / rows[0]["name"] / "model.json").stat().st_mtime_ns == fitted_at
     with pytest.raises(trilobe.Error, match="noise"):
         trilobe.fit_many([SMALL], tmp_path, program=PROGRAM, noise=-1)
+
+
+def test_names_of_a_batch_are_no_formulas():
+    from trilobe._batch import _cell
+
+    for text, value in {"'=1+1": "=1+1", "''=": "'=", "'-3": "-3", "-3": -3.0, "it's": "it's", "'a": "'a", "": ""}.items():
+        assert _cell(text) == value
 
 
 def test_draws(fitted, plastic, tmp_path):

@@ -67,6 +67,29 @@ TEST(CeresPage, EndsWhereLmDoesWithoutThePrior) {
   EXPECT_GT(objective.Value(smooth), E);
 }
 
+// By bounds alone Ceres stops above.
+TEST(CeresPage, EndsWhereLmDoesThoughParametersEndAtZero) {
+  const Measurement plastic = LoadMeasurement("synth:plastic@12x10x16", {.noise = 0.03});
+  const Objective objective(SamplesOf(plastic), ModelSpec::SharedFactors(1, kGrid),
+                            FindWeighting("appearance"));
+  FactorModel model = Start(objective), by_lm = model, by_bounds = model;
+  MakeSolver("lm")->Solve(objective, {.max_iterations = 300}, &by_lm);
+  MakeSolver("lm")->Solve(objective, {.max_iterations = 300, .positivity = Positivity::kBounds},
+                          &by_bounds);
+  const double E = objective.Value(by_lm);
+  EXPECT_GT(objective.Value(by_bounds), 1.02 * E);
+  const FactorModel deviations = FitSmoothF(objective, 0, &model);
+  EXPECT_LT(objective.Value(model), 1.0001 * E);
+  int held = 0;
+  for (size_t k = 0; k < model.parameters().size(); ++k) {
+    if (model.parameters()[k] == 0) {
+      EXPECT_EQ(deviations.parameters()[k], 0) << k;
+      ++held;
+    }
+  }
+  EXPECT_GT(held, 0);
+}
+
 // (J'J)^-1 of what is free by a dense factorisation, of equations that the library adds up.
 TEST(CeresPage, StandardDeviationsAreThoseOfADenseInverse) {
   const Objective objective = ObjectiveOf(Copper());

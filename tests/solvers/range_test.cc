@@ -108,6 +108,28 @@ TEST_P(Range, ARightFitOrAnErrorThatNamesTheFactor) {
   EXPECT_GT(refused, 0);
 }
 
+// To the last bit, since all that a power of two changes is exponents (docs/objective.md).
+TEST_P(Range, DataTimesAPowerOfTwoHaveTheSameTables) {
+  const SolverEntry& solver = FindSolver(GetParam());
+  const auto fitted = [&](int k) {
+    const Objective objective(Scaled(Measured(), std::exp2(k)), ModelSpec::SharedFactors(2, kGrid),
+                              FindWeighting("appearance"));
+    FactorModel model = InitialModels().front().make(objective, 1);
+    solver.make()->Solve(objective, {.max_iterations = 10, .diagnose = false, .starts = 2}, &model);
+    return model;
+  };
+  const FactorModel expected = fitted(0);
+  for (const int k : {-30, -3, 1, 20}) {
+    SCOPED_TRACE(k);
+    FactorModel model = fitted(k);
+    for (double& d : model.d()) d = std::ldexp(d, -k);
+    for (int m = 0; m < model.spec().lobes; ++m) {
+      for (double& s : model.s(m)) s = std::ldexp(s, -k);
+    }
+    EXPECT_THAT(model.parameters(), testing::ElementsAreArray(expected.parameters()));
+  }
+}
+
 std::vector<std::string> SolverNames() {
   std::vector<std::string> names;
   for (const SolverEntry& solver : kLibrarySolvers) {

@@ -2,6 +2,7 @@
 import contextlib
 import io
 import os
+import shutil
 import subprocess
 import sys
 import types
@@ -19,6 +20,21 @@ PROGRAM = """#!/bin/sh
 [ "$2" != bad ] || { echo broken >&2; exit 1; }
 echo 1 > "$1/number"
 """
+
+
+class PublishedTest(FolderTest):
+    def test_published_texts_are_those_of_published_tables(self):
+        from lab import plots  # here: it takes a second to load
+        with unittest.mock.patch.object(plots, "save", lambda figure, _: plots.plt.close(figure)):
+            for name in experiments.names():
+                experiment = experiments.load(name)
+                for published in PUBLISHED.glob(f"{name}/results*"):
+                    drawn = self.folder / name / published.name
+                    shutil.copytree(published, drawn)
+                    main.draw(experiment, drawn)
+                    for path in published.glob("*.md"):
+                        with self.subTest(path=path):
+                            self.assertEqual((drawn / path.name).read_text(), path.read_text())
 
 
 class MainTest(FolderTest):

@@ -9,7 +9,10 @@ INF = math.inf
 class StatsTest(unittest.TestCase):
     def test_quantiles_count_what_was_never_reached(self):
         self.assertEqual(stats.median([3, 1, 2]), 2)
+        self.assertEqual(stats.median([4, 1, 2, 3]), 2.5)
         self.assertEqual(stats.median([1, INF, INF]), INF)
+        self.assertEqual(stats.median([INF, 1]), INF)
+        self.assertEqual(stats.spread([1, 2, 3, INF], 0.25), (1, 2.5, 3))
         self.assertEqual(stats.quantile([1, 2, 3, INF], 0.75), 3)
         self.assertEqual(stats.quantile([5], 0), 5)
         self.assertTrue(math.isnan(stats.median([])))

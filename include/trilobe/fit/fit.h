@@ -7,6 +7,7 @@
 #include "trilobe/fit/bands/fit_bands.h"
 #include "trilobe/fit/finish_fit.h"
 #include "trilobe/fit/fit_options.h"
+#include "trilobe/fit/held_out_error.h"
 #include "trilobe/fit/prior/node_choice.h"
 #include "trilobe/fit/prior/reach.h"
 #include "trilobe/io/model_files/model_file.h"
@@ -16,6 +17,7 @@
 #include "trilobe/model/lobes/lobe_light.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/objective/objective.h"
+#include "trilobe/model/objective/repeat_noise.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/solver.h"
 
@@ -67,14 +69,17 @@ struct FitResult {
   // (EstimateWholeSphere, EstimateWholeOfSamples).
   std::optional<WholeSphere> whole = {};
   LobeLight light = {};
-  std::optional<BandsFit> bands = {};        // FitOptions::bands, unless stopped before
-  std::optional<SeenError> bands_seen = {};  // their colours, as `appearance` or samples_seen
+  std::optional<RepeatNoise> repeats = {};
+  std::optional<HeldOutError> held_out = {};  // unless the samples are too few
+  std::optional<BandsFit> bands = {};         // FitOptions::bands, unless stopped before
+  std::optional<SeenError> bands_seen = {};   // their colours, as `appearance` or samples_seen
   // The largest jump of the directional albedo from one entry of G to the next (RippleOf).
   struct Ripple {
     double share = 0, theta_i = 0;  // [rad]
   } ripple = {};
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, bands = 0, score = 0;
+    double held_out = 0;
   } seconds = {};
   bool raw = false;          // FitOptions::raw
   bool interrupted = false;  // `stop` has returned true

@@ -57,6 +57,9 @@ struct FitOptions {
   bool bands = false;
   bool compare = true;  // computes the result's appearance, samples_seen, left_out, reach and light
   AppearanceOptions appearance = {};  // num_threads is replaced
+  // Also fits the samples without a fifth of their blocks of directions, drawn by this seed, and
+  // compares that fit with what was held out (FitResult::held_out).
+  std::optional<uint64_t> held_out = {};
   uint64_t seed = 1;
   int num_threads = 1;
 

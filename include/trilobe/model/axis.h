@@ -54,9 +54,9 @@ struct Axis {
   double Theta(int entry) const;
   double Phi(int entry) const;  // 0 unless kPolar
 
-  // The cell of an entry [rad]. For kRootTheta, the ring of its bin. For kPolar, the directions up
-  // to halfway to the neighbouring nodes; outermost cells are symmetric in theta about their node,
-  // clipped to [0, 90 degrees].
+  // The cell of an entry [rad]. For kPolar, the directions up to halfway to the neighbouring nodes;
+  // outermost cells are symmetric in theta about their node, clipped to [0, 90 degrees]. Otherwise,
+  // the ring of its bin, or up to halfway to the neighbouring nodes.
   struct Cell {
     double theta_begin, theta_end, phi_width;
     double SolidAngle() const;

@@ -102,8 +102,12 @@ std::string EncodeAddress(std::string_view path) {
 }
 
 std::string CsvField(std::string_view any_text) {
+  constexpr std::string_view kFormula = "=+-@\t\r", kSeparators = ",;\t\"\r\n";
   std::string text = ValidUtf8(any_text);
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  const bool guarded =
+      !text.empty() && (text.front() == '\'' || kFormula.find(text.front()) != kFormula.npos);
+  if (guarded) text.insert(0, "'");
+  if (!guarded && text.find_first_of(kSeparators) == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";

@@ -30,7 +30,10 @@ std::string EscapedMarkup(std::string_view text);
 // A path as part of an address: what is not a letter, a digit or one of -._~/ as %XX (RFC 3986).
 std::string EncodeAddress(std::string_view path);
 
-// Text as a field of a CSV file: in UTF-8, and quoted where it must be (RFC 4180).
+// Text as a field of a CSV file: in UTF-8, and quoted where it must be (RFC 4180), or where another
+// separator might be taken for that of fields. A spreadsheet would run what begins with one of
+// = + - @, a tab or a carriage return as a formula: such text, or what begins with ', has a '
+// before it, which readers of the file take off.
 std::string CsvField(std::string_view text);
 
 }  // namespace trilobe

@@ -1,8 +1,11 @@
 #include "core/files/content.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "core/base/text.h"
@@ -83,11 +86,20 @@ Content RecogniseContent(std::string_view bytes) {
 
 std::string BeginningOf(const std::string& path, size_t size) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return {};  // a pipe would be waited for
-  std::ifstream file(path, std::ios::binary);
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  // As of ReadFile: some files of the system are regular by name, and would be waited for.
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) return {};
   std::string begin(size, '\0');
-  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<size_t>(file.gcount()));
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t count = read(fd, begin.data() + done, size - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    done += static_cast<size_t>(count);
+  }
+  close(fd);
+  begin.resize(done);
   return begin;
 }
 

@@ -221,7 +221,7 @@ std::string EndingOf(const std::string& path) {
 // system error is seen with its errno. Not synced to the disk: this guards against a full disk and
 // a dying program, not against a power cut.
 void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write,
-               const std::function<void()>& before_renaming) {
+               const BeforeRenaming& before_renaming) {
   const std::string target = ResolveTarget(path);
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
@@ -232,7 +232,7 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
   TemporaryFile file(target);
   if (!file.ok()) FailToWrite(path, WhyNot(path));
   if (!file.Write(stream.view())) FailToWrite(path, std::strerror(errno));
-  before_renaming();
+  before_renaming(stream.view());
   if (!file.RenameTo(target)) FailToWrite(path, std::strerror(errno));
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 namespace trilobe {
 
@@ -22,11 +23,12 @@ std::string EndingOf(const std::string& path);
 // Writes a file atomically: `write` fills a temporary file beside `path`, which replaces `path`
 // when complete. On any failure, including an exception from `write`, the temporary file is
 // removed, an existing file at `path` is unchanged, and Error gives the reason ("No space left on
-// device"). `before_renaming` is called when the new file is complete and before the old one is
-// replaced.
+// device"). `before_renaming` is called with the content when the new file is complete and before
+// the old one is replaced.
+using BeforeRenaming = std::function<void(std::string_view content)>;
 void WriteFile(
     const std::string& path, const std::function<void(std::ostream&)>& write,
-    const std::function<void()>& before_renaming = [] {});
+    const BeforeRenaming& before_renaming = [](std::string_view) {});
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }

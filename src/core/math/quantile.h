@@ -38,11 +38,21 @@ inline double WeightedQuantile(std::vector<double> values, const std::vector<dou
   return values[at];
 }
 
-// The middle one of some values, of which there must be at least one; of an even number the upper.
-inline double Median(std::vector<double> values) {
+// The middle one of some values, of which there must be at least one; of an even number the upper
+// of the two in the middle, so that it is one of the values.
+inline double UpperMedian(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
+}
+
+// The median of some values, of which there must be at least one; of an even number the mean of the
+// two in the middle, which is infinite if one of them is.
+inline double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  if (values.size() % 2 == 1) return *middle;
+  return std::midpoint(*std::max_element(values.begin(), middle), *middle);
 }
 
 }  // namespace trilobe

@@ -14,9 +14,9 @@ RobustLine FitRobustLine(std::span<const double> x, std::span<const double> y) {
   for (size_t k = 0; k < x.size(); ++k) {
     for (size_t l = k + 1; l < x.size(); ++l) slopes.push_back((y[l] - y[k]) / (x[l] - x[k]));
   }
-  const double slope = Median(std::move(slopes));
+  const double slope = UpperMedian(std::move(slopes));
   for (size_t k = 0; k < x.size(); ++k) heights.push_back(y[k] - slope * x[k]);
-  return {.slope = slope, .at_zero = Median(std::move(heights))};
+  return {.slope = slope, .at_zero = UpperMedian(std::move(heights))};
 }
 
 double LevelledOff(const RobustLine& line, double from, double x) {

@@ -1,5 +1,7 @@
 #include "core/system/process.h"
 
+#include <sys/utsname.h>
+
 #include <ctime>
 #include <fstream>
 #include <limits>
@@ -14,6 +16,17 @@ std::string UtcNow() {
   char text[32];
   std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text;
+}
+
+std::string ProcessorName() {
+  std::ifstream processors("/proc/cpuinfo");
+  for (std::string line; std::getline(processors, line);) {
+    if (!line.starts_with("model name")) continue;
+    const size_t begin = line.find_first_not_of(" \t:", line.find(':'));
+    if (begin != std::string::npos) return line.substr(begin);
+  }
+  utsname system{};
+  return uname(&system) == 0 ? system.machine : "";
 }
 
 double ProcessorSeconds() {

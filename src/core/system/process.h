@@ -28,6 +28,10 @@ class Stopwatch {
 // The current time in ISO 8601: "2024-03-01T12:00:00Z".
 std::string UtcNow();
 
+// The processor of this machine: "Intel(R) Xeon(R) Platinum 8370C CPU @ 2.80GHz", or the
+// architecture, as "aarch64", where Linux does not name it.
+std::string ProcessorName();
+
 // Seconds that all threads of this process have had of the processors since it began.
 double ProcessorSeconds();
 

@@ -94,7 +94,7 @@ Rgb AnisotropicAlbedoLimit(const Objective& data, const FactorModel& model) {
   for (int c = 0; c < kChannels; ++c) {
     std::vector<double> of_channel;
     for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
-    limit[c] = std::max(limit[c], Median(std::move(of_channel)));
+    limit[c] = std::max(limit[c], UpperMedian(std::move(of_channel)));
   }
   return limit;
 }

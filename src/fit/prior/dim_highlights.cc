@@ -95,7 +95,7 @@ Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& mode
   for (int c = 0; c < kChannels; ++c) {
     std::vector<double> of_channel;
     for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
-    median[c] = Median(std::move(of_channel));
+    median[c] = UpperMedian(std::move(of_channel));
   }
   return median;
 }

@@ -100,6 +100,8 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->bands = fit.bands;
   report->bands_seen = fit.bands_seen;
   report->ripple = fit.ripple;
+  report->repeats = fit.repeats;
+  report->held_out = fit.held_out;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
 }
 
@@ -151,7 +153,11 @@ void PrintSummary(const FitReport& report) {
   std::cout << "solver       " << summary.solver << ": " << summary.iterations << " iterations, "
             << EndText(summary.stop_reason) << "; E is "
             << Text(100 * RelativeTo(report.black_objective, summary.final_objective), 3)
-            << " % of a black model's\n";
+            << " % of a black model's";
+  if (summary.diagnosis) {
+    std::cout << ", its scaled gradient " << Text(summary.diagnosis->optimality, 2);
+  }
+  std::cout << "\n";
   if (!report.finished.steps.empty()) {
     PrintLine("finished     E is " + Text(100 * report.score.relative_objective, 3) + " %, after " +
               FinishedText(report));
@@ -160,6 +166,12 @@ void PrintSummary(const FitReport& report) {
     PrintLine("note         no form was chosen, which takes " +
               std::to_string(report.finished.too_few_to_choose) +
               " samples or more; this is the default form");
+  }
+  if (report.held_out) {
+    const HeldOutError& held_out = *report.held_out;
+    PrintLine("held out     fitted without " + std::to_string(held_out.samples) +
+              " samples, E of these is " + Text(100 * held_out.relative_objective, 3) +
+              " % of a black model's, Delta E " + Text(held_out.mean_delta_e, 2));
   }
   if (report.bands) PrintLine("spectra      " + Describe(*report.bands, report.bands_seen));
   if (report.appearance) std::cout << DescribeBriefly(*report.appearance);
@@ -178,6 +190,7 @@ void PrintSeconds(const FitReport& report) {
                                    {"finishing", seconds.finish},
                                    {"fitting wavelengths", seconds.bands},
                                    {"comparing", seconds.score},
+                                   {"fitting without held-out samples", seconds.held_out},
                                    {"drawing", seconds.draw}}) {
     // Rounded before they are summed, so that what is printed adds up.
     const double rounded = std::round(100 * part) / 100;

@@ -60,6 +60,10 @@ struct FitReport {
   std::optional<BandsFit> bands;
   std::optional<SeenError> bands_seen;
   FitResult::Ripple ripple;
+  std::optional<RepeatNoise> repeats;
+  std::optional<HeldOutError> held_out;
+  std::string processor;  // ProcessorName
+  int side_by_side = 1;   // fits that ran at once, each on `threads` of its own
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
 };

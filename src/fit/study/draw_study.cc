@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/math/quantile.h"
+#include "fit/study/curves.h"
 #include "io/pictures/gnuplot.h"
 
 namespace trilobe {
@@ -16,21 +17,9 @@ namespace {
 
 using Drawing = StudyFigure::Drawing;
 
-constexpr int kWidth = 760, kHeight = 460;
 constexpr double kFloor = 1e-5;  // smaller excesses are drawn here: the lowest E
 
-std::string ColorOf(size_t method) {
-  constexpr std::string_view kColors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                          "#E69F00", "#56B4E9", "#7D7D7D", "#8C6D31"};
-  return "'" + std::string(kColors[method % std::size(kColors)]) + "'";
-}
-
 double Drawn(double excess) { return std::max(excess, kFloor); }
-
-// Of the curves of a method: more than eight have the same colours, dashed.
-std::string StyleOf(size_t method) {
-  return "linecolor " + ColorOf(method) + " dashtype " + std::to_string(1 + method / 8);
-}
 
 // An axis of excesses over the lowest E, up to the largest one.
 std::string ExcessAxis(double largest) {
@@ -46,23 +35,6 @@ std::string ExcessAxis(double largest) {
          GnuplotNumber(1.6 * top) + "]\nset ytics (" + tics +
          ")\nset ylabel 'E above the lowest'\n";
 }
-
-// Blocks of data, and the plot that shows them.
-struct Curves {
-  std::string data, plot;
-
-  // `style`: what follows `using 1:2`.
-  void Add(const std::vector<std::vector<double>>& rows, const std::string& style,
-           const std::string& title) {
-    const std::string name = "curve" + std::to_string(count_++);
-    data += GnuplotData(name, rows);
-    plot += (plot.empty() ? "plot " : ", ") + ("$" + name) + " using 1:2 " + style + " " +
-            (title.empty() ? "notitle" : "title " + GnuplotQuote(title) + " noenhanced");
-  }
-
- private:
-  int count_ = 0;
-};
 
 // A curve for each run, in the colour of its method, which the first one names.
 template <typename Rows>
@@ -90,7 +62,20 @@ double LargestExcess(std::span<const StudyRun> runs) {
   return largest;
 }
 
-constexpr const char* kKey = "set key outside center top horizontal\n";
+// Whether a picture shows a record besides those before it: of thousands, each some 1 % later.
+class Thinned {
+ public:
+  bool Takes(double x, bool is_last) {
+    if (count_++ >= kAll && x < 1.01 * last_ && !is_last) return false;
+    last_ = x;
+    return true;
+  }
+
+ private:
+  static constexpr int kAll = 200;
+  int count_ = 0;
+  double last_ = 0;
+};
 
 // The lowest E so far, over seconds.
 Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
@@ -98,38 +83,63 @@ Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
   const Curves curves = CurvesOf(runs, "with steps linewidth 2", [&](const StudyRun& run) {
     std::vector<std::vector<double>> rows;
     double lowest = std::numeric_limits<double>::infinity();
+    Thinned thinned;
     for (const IterationRecord& record : run.trace) {
       lowest = std::min(lowest, run.ExcessOf(record.minimised()));
-      if (record.seconds > 0) rows.push_back({record.seconds, Drawn(lowest)});
+      const bool is_last = &record == &run.trace.back();
+      if (record.seconds > 0 && thinned.Takes(record.seconds, is_last)) {
+        rows.push_back({record.seconds, Drawn(lowest)});
+      }
     }
     if (rows.empty()) rows.push_back({1e-3, Drawn(lowest)});
     for (const std::vector<double>& row : rows) seconds.push_back(row[0]);
     return rows;
   });
-  if (curves.plot.empty()) return {};
+  if (curves.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + kKey + ExcessAxis(LargestExcess(runs)) + "set logscale x\nset xrange " +
+          curves.data() + kKey + ExcessAxis(LargestExcess(runs)) + "set logscale x\nset xrange " +
               GnuplotLogRange(seconds, 3.5) + "\n" + LogTics(LogRange(seconds, 3.5), 'x') +
-              "set xlabel 'seconds'\n" + curves.plot + "\n"};
+              "set xlabel 'seconds'\n" + curves.plot() + "\n"};
+}
+
+// The axis of iterations. Sweeps are so many more than joint steps that these would be next to the
+// axis but for a logarithmic one, on which the start is at 1/2.
+constexpr double kStart = 0.5;
+std::string IterationAxis(int most, bool logarithmic) {
+  const std::string to = ":" + std::to_string(most) + "]\n";
+  if (!logarithmic) return "set xrange [0" + to;
+  std::string tics = "'start' " + GnuplotNumber(kStart);
+  for (int tic = 1; tic <= most && tic <= 100000000; tic *= 10) {
+    tics += ", '" + std::to_string(tic) + "' " + std::to_string(tic);
+  }
+  return "set logscale x\nset xrange [" + GnuplotNumber(kStart) + to + "set xtics (" + tics + ")\n";
 }
 
 // E of each iteration.
 Drawing Convergence(std::span<const StudyRun> runs) {
-  int most = 1;
+  constexpr int kManyTimes = 10;
+  int most = 1, fewest = std::numeric_limits<int>::max();
+  for (const StudyRun& run : runs) {
+    if (run.failed()) continue;
+    most = std::max(most, run.iterations());
+    fewest = std::min(fewest, run.iterations());
+  }
+  const bool logarithmic = most > kManyTimes * std::max(fewest, 1);
   const Curves curves = CurvesOf(runs, "with lines linewidth 2", [&](const StudyRun& run) {
     std::vector<std::vector<double>> rows;
+    Thinned thinned;
     for (const IterationRecord& record : run.trace) {
-      rows.push_back(
-          {static_cast<double>(record.iteration), Drawn(run.ExcessOf(record.minimised()))});
-      most = std::max(most, record.iteration);
+      if (!thinned.Takes(record.iteration, &record == &run.trace.back())) continue;
+      const double x = logarithmic ? std::max<double>(record.iteration, kStart) : record.iteration;
+      rows.push_back({x, Drawn(run.ExcessOf(record.minimised()))});
     }
     return rows;
   });
-  if (curves.plot.empty()) return {};
+  if (curves.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + kKey + ExcessAxis(LargestExcess(runs)) +
-              "set xrange [0:" + std::to_string(most) +
-              "]\nset xlabel 'iteration (for AWLS, sweep)'\n" + curves.plot + "\n"};
+          curves.data() + kKey + ExcessAxis(LargestExcess(runs)) +
+              IterationAxis(most, logarithmic) + "set xlabel 'iteration (for AWLS, sweep)'\n" +
+              curves.plot() + "\n"};
 }
 
 // Text as gnuplot's label of a tic, which is a format.
@@ -163,12 +173,12 @@ Drawing FinalErrors(std::span<const StudyRun> runs) {
     if (rows.empty()) continue;
     curves.Add(rows, "with points pointtype 7 pointsize 0.9 linecolor " + ColorOf(k), "");
   }
-  if (curves.plot.empty()) return {};
+  if (curves.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + ExcessAxis(largest) +
+          curves.data() + ExcessAxis(largest) +
               "set xrange [-0.5:" + GnuplotNumber(static_cast<double>(methods.size()) - 0.5) +
               "]\nset grid noxtics\nset xtics noenhanced " + (long_names ? "rotate by -20 " : "") +
-              "(" + tics + ")\n" + curves.plot + "\n"};
+              "(" + tics + ")\n" + curves.plot() + "\n"};
 }
 
 // D of a lobe over the root of theta_h in degrees, of an anisotropic one the mean over phi_h.
@@ -191,13 +201,14 @@ std::string LobePanel(const StudyRun& lowest, const std::vector<const StudyRun*>
   Curves curves;
   for (const StudyRun* run : runs) {
     const int own = run == &lowest ? lobe : run->lobes->lobe[lobe];
+    if (own < 0) continue;  // it has fewer lobes
     const std::vector<std::vector<double>> rows = DistributionOf(run->file, own);
     if (!rows.empty()) curves.Add(rows, "with lines linewidth 2 " + StyleOf(method), "");
   }
   const std::vector<std::vector<double>> of_lowest = DistributionOf(lowest.file, lobe);
-  if (curves.plot.empty() || of_lowest.empty()) return "set multiplot next\n";
+  if (curves.empty() || of_lowest.empty()) return "set multiplot next\n";
   curves.Add(of_lowest, "with lines linewidth 1.5 dashtype 2 linecolor '#000000'", "");
-  return "set title " + title + " noenhanced\n" + curves.data + curves.plot + "\n";
+  return "set title " + title + " noenhanced\n" + curves.data() + curves.plot() + "\n";
 }
 
 // The axis of D of a lobe, for all runs.
@@ -206,6 +217,7 @@ std::string DistributionAxis(const StudyRun& lowest, std::span<const StudyRun> r
   for (const StudyRun& run : runs) {
     if (!run.lobes && &run != &lowest) continue;
     const int own = run.lobes ? run.lobes->lobe[lobe] : lobe;
+    if (own < 0) continue;
     for (const std::vector<double>& row : DistributionOf(run.file, own)) values.push_back(row[1]);
   }
   return "set yrange " + GnuplotLogRange(values, 5) + "\n" + LogTics(LogRange(values, 5), 'y');
@@ -218,11 +230,10 @@ std::string PanelTitle(const std::string& method, const std::vector<const StudyR
   for (const StudyRun* run : runs) {
     if (run->lobes) matches.push_back(run->lobes->match[lobe]);
   }
-  std::ranges::sort(matches);
   constexpr size_t kLetters = 34;
   const std::string name = method.size() > kLetters ? method.substr(0, kLetters - 1) + "…" : method;
   std::string text = "lobe " + std::to_string(lobe + 1);
-  if (!matches.empty()) text += ", match " + Text(matches[(matches.size() - 1) / 2], 2);
+  if (!matches.empty()) text += ", match " + Text(Median(std::move(matches)), 2);
   return GnuplotQuote(name) + R"(."\n".)" + GnuplotQuote(text);
 }
 

@@ -8,7 +8,7 @@
 
 namespace trilobe {
 
-// A figure of the runs of one problem. The same runs give the same SVG.
+// A figure of the runs of one problem, or of all. The same runs give the same SVG.
 struct StudyFigure {
   const char* name;     // of its files, without extension
   const char* caption;  // what it shows
@@ -19,8 +19,10 @@ struct StudyFigure {
   Drawing (*draw)(std::span<const StudyRun> runs);
 };
 
-// Error against time; convergence; final errors; lobes.
+// Figures of one problem: error against time; convergence; final errors; lobes.
 std::span<const StudyFigure> StudyFigures();
+// Figures of all problems: performance and data profiles (Profile).
+std::span<const StudyFigure> ProfileFigures();
 
 // Draws a figure as NAME.svg and NAME.pdf into an existing folder. Returns whether there was
 // something to draw. Throws Error as DrawVectors does.

@@ -2,25 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <locale>
-#include <sstream>
 #include <utility>
 
-#include "core/base/text.h"
+#include "core/math/quantile.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// The lower median, of at least one value: between a finite value and infinity is nothing.
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 std::optional<double> MedianOf(const std::vector<double>& values) {
   return values.empty() ? std::nullopt : std::optional<double>(Median(values));
@@ -53,10 +43,11 @@ const StudyRun* Lowest(const std::vector<const StudyRun*>& runs) {
   return lowest;
 }
 
-std::optional<LobeOrderMatch> Match(const StudyRun* reference, const StudyRun& run) {
+std::optional<LobeMatch> Match(const StudyRun* reference, const StudyRun& run) {
   if (reference == nullptr || reference == &run) return {};
-  const ModelSpec& spec = run.file.model.spec();
-  if (spec.lobes == 0 || spec != reference->file.model.spec()) return {};
+  const ModelSpec &spec = run.file.model.spec(), &of_reference = reference->file.model.spec();
+  if (!HaveComparableLobes(spec, of_reference)) return {};
+  if (spec.lobes == 0 && of_reference.lobes == 0) return {};
   return MatchLobes(reference->file, run.file);
 }
 
@@ -71,25 +62,30 @@ double Unit(const std::vector<const StudyRun*>& runs, double lowest) {
   return std::max({lowest, kRounding * initial, std::numeric_limits<double>::min()});
 }
 
-// Wilson's interval at 1.96 standard deviations, 95 %, `side` -1 or 1.
-double WilsonBound(const Share& share, int side) {
-  if (share.of == 0) return side < 0 ? 0 : 1;
-  constexpr double z = 1.959964;
-  const double n = share.of, p = share.value();
-  const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-  return std::clamp((p + z * z / (2 * n) + side * half) / (1 + z * z / n), 0.0, 1.0);
-}
-
 void Count(bool counts, Share* share) {
   share->count += counts ? 1 : 0;
   ++share->of;
+}
+
+void Append(const std::optional<double>& value, std::vector<double>* values) {
+  if (value) values->push_back(*value);
+}
+
+void CountEnding(const std::string& reason, std::vector<std::pair<std::string, int>>* endings) {
+  const auto known = std::ranges::find(*endings, reason, &std::pair<std::string, int>::first);
+  if (known != endings->end()) {
+    ++known->second;
+  } else {
+    endings->emplace_back(reason, 1);
+  }
 }
 
 MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::string& problem,
                         const std::string& method) {
   MethodSummary summary{.problem = problem, .method = method};
   summary.runs = static_cast<int>(runs.size());
-  std::vector<double> excess, seconds, seconds_to, iterations, psnr, delta_e, least;
+  std::vector<double> excess, seconds, seconds_to, iterations, psnr, delta_e, agreement;
+  std::vector<double> relative, held_out, held_out_delta_e;
   double all_seconds = 0;
   for (const StudyRun* run : runs) {
     excess.push_back(run->excess());
@@ -103,17 +99,27 @@ MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::str
     }
     all_seconds += run->seconds;
     iterations.push_back(run->iterations());
-    if (run->psnr_db) psnr.push_back(*run->psnr_db);
-    if (run->mean_delta_e) delta_e.push_back(*run->mean_delta_e);
+    CountEnding(run->stop_reason, &summary.endings);
+    if (run->excess() > kAsGood && run->reached_limit()) summary.short_of_limit = true;
+    if (summary.parameters == 0) summary.parameters = run->parameters;
+    Append(run->relative_E, &relative);
+    Append(run->held_out_E, &held_out);
+    Append(run->held_out_delta_e, &held_out_delta_e);
+    Append(run->psnr_db, &psnr);
+    Append(run->mean_delta_e, &delta_e);
+    if (run->optimality) {
+      summary.optimality = std::max(summary.optimality.value_or(0), *run->optimality);
+    }
+    Count(!run->seen, &summary.unseen);
     const SolverSummary::Raises raises = SolverSummary::FindRaises(run->trace);
     summary.all_iterations += run->iterations();
     summary.raised += static_cast<int>(raises.iterations.size());
     summary.largest_rise = std::max(summary.largest_rise, raises.largest);
-    if (run->lobes) {
-      least.push_back(run->lobes->least());
-      Count(run->lobes->least() >= kSameLobes, &summary.same_lobes);
+    if (const std::optional<double> alike = run->agreement()) {
+      agreement.push_back(*alike);
+      Count(*alike >= kSameLobes, &summary.same_lobes);
     }
-    if (run->own_lobes) Count(run->own_lobes->least() >= kSameLobes, &summary.same_again);
+    if (run->own_lobes) Count(run->own_lobes->agreement >= kSameLobes, &summary.same_as_own);
   }
   summary.lowest = std::ranges::min(excess);
   summary.highest = std::ranges::max(excess);
@@ -125,43 +131,12 @@ MethodSummary Summarise(const std::vector<const StudyRun*>& runs, const std::str
   summary.iterations = MedianOf(iterations).value_or(0);
   summary.psnr_db = MedianOf(psnr);
   summary.mean_delta_e = MedianOf(delta_e);
-  summary.least_match = MedianOf(least);
+  summary.relative_E = MedianOf(relative);
+  summary.held_out_E = MedianOf(held_out);
+  summary.held_out_delta_e = MedianOf(held_out_delta_e);
+  summary.agreement = MedianOf(agreement);
   return summary;
 }
-
-// Numbers that read back to the same double, in any locale; "" where there is none.
-class Csv {
- public:
-  explicit Csv(const char* header) {
-    out_.imbue(std::locale::classic());
-    out_ << header << '\n' << std::setprecision(std::numeric_limits<double>::max_digits10);
-  }
-  template <typename Value>
-  Csv& Add(const Value& value) {
-    Begin() << value;
-    return *this;
-  }
-  Csv& Add(const std::string& text) {
-    Begin() << CsvField(text);
-    return *this;
-  }
-  Csv& Add(const std::optional<double>& value) { return value ? Add(*value) : Add(""); }
-  void EndRow() {
-    out_ << '\n';
-    first_ = true;
-  }
-  std::string text() const { return out_.str(); }
-
- private:
-  std::ostream& Begin() {
-    if (!first_) out_ << ',';
-    first_ = false;
-    return out_;
-  }
-
-  std::ostringstream out_;
-  bool first_ = true;
-};
 
 }  // namespace
 
@@ -172,6 +147,15 @@ double StudyRun::objective() const {
 }
 
 int StudyRun::iterations() const { return std::max(0, static_cast<int>(trace.size()) - 1); }
+
+bool StudyRun::reached_limit() const {
+  return stop_reason == StopReasonName(StopReason::kMaxIterations) ||
+         stop_reason == StopReasonName(StopReason::kMaxSeconds);
+}
+
+std::optional<double> StudyRun::agreement() const {
+  return lobes ? std::optional(lobes->agreement) : std::nullopt;
+}
 
 double StudyRun::SecondsTo(double most_excess) const {
   const auto reached = std::ranges::find_if(trace, [&](const IterationRecord& record) {
@@ -206,8 +190,17 @@ void CompareRuns(std::vector<StudyRun>* runs) {
   }
 }
 
-double Share::low() const { return WilsonBound(*this, -1); }
-double Share::high() const { return WilsonBound(*this, 1); }
+Interval WilsonInterval(double share, int n) {
+  if (n == 0) return {};
+  constexpr double z = 1.959964;  // standard deviations, 95 %
+  const double middle = share + z * z / (2.0 * n), scale = 1 + z * z / n;
+  const double half = z * std::sqrt(share * (1 - share) / n + z * z / (4.0 * n * n));
+  return {.low = std::clamp((middle - half) / scale, 0.0, 1.0),
+          .high = std::clamp((middle + half) / scale, 0.0, 1.0)};
+}
+
+double Share::low() const { return WilsonInterval(value(), of).low; }
+double Share::high() const { return WilsonInterval(value(), of).high; }
 
 std::vector<std::string> ProblemsOf(std::span<const StudyRun> runs) {
   return NamesOf(runs, &StudyRun::problem);
@@ -215,6 +208,24 @@ std::vector<std::string> ProblemsOf(std::span<const StudyRun> runs) {
 
 std::vector<std::string> MethodsOf(std::span<const StudyRun> runs) {
   return NamesOf(runs, &StudyRun::method);
+}
+
+Times TimesOf(std::span<const MethodSummary> summaries, const std::string& method) {
+  constexpr double kLeast = 1e-6;
+  Times times;
+  double logarithms = 0;
+  for (const MethodSummary& of : summaries) {
+    if (of.method != method) continue;
+    ++times.of;
+    if (std::isfinite(of.seconds_to_as_good)) {
+      ++times.reached;
+      logarithms += std::log(std::max(of.seconds_to_as_good, kLeast));
+    } else {
+      times.short_of_limit = times.short_of_limit || of.short_of_limit;
+    }
+  }
+  if (times.reached > 0) times.geometric_mean = std::exp(logarithms / times.reached);
+  return times;
 }
 
 std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs) {
@@ -226,53 +237,6 @@ std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs) {
     }
   }
   return summaries;
-}
-
-std::string RunsCsv(std::span<const StudyRun> runs) {
-  Csv csv(
-      "problem,method,start,objective,excess,iterations,seconds,seconds_to_1_percent,raised,"
-      "largest_rise,least_match,psnr_db,mean_delta_e,stop_reason,folder,error");
-  for (const StudyRun& run : runs) {
-    const SolverSummary::Raises raises = SolverSummary::FindRaises(run.trace);
-    csv.Add(run.problem).Add(run.method).Add(run.start);
-    csv.Add(run.objective()).Add(run.excess()).Add(run.iterations()).Add(run.seconds);
-    csv.Add(run.SecondsTo(kAsGood)).Add(raises.iterations.size()).Add(raises.largest);
-    csv.Add(run.lobes ? std::optional(run.lobes->least()) : std::nullopt);
-    csv.Add(run.psnr_db).Add(run.mean_delta_e).Add(run.stop_reason).Add(run.folder).Add(run.error);
-    csv.EndRow();
-  }
-  return csv.text();
-}
-
-std::string MethodsCsv(std::span<const MethodSummary> summaries) {
-  Csv csv(
-      "problem,method,runs,failed,lowest_excess,median_excess,highest_excess,within_1_percent,"
-      "within_1_percent_low,within_1_percent_high,within_0.1_percent,seconds,"
-      "seconds_to_1_percent,expected_seconds_to_1_percent,iterations,raised,largest_rise,"
-      "same_lobes_as_lowest,same_lobes_again,least_match,psnr_db,mean_delta_e");
-  for (const MethodSummary& of : summaries) {
-    csv.Add(of.problem).Add(of.method).Add(of.runs).Add(of.failed);
-    csv.Add(of.lowest).Add(of.median).Add(of.highest);
-    csv.Add(of.as_good.value()).Add(of.as_good.low()).Add(of.as_good.high());
-    csv.Add(of.the_same.value()).Add(of.seconds).Add(of.seconds_to_as_good);
-    csv.Add(of.expected_seconds).Add(of.iterations).Add(of.raised).Add(of.largest_rise);
-    csv.Add(of.same_lobes.value()).Add(of.same_again.value()).Add(of.least_match);
-    csv.Add(of.psnr_db).Add(of.mean_delta_e);
-    csv.EndRow();
-  }
-  return csv.text();
-}
-
-std::string TracesCsv(std::span<const StudyRun> runs) {
-  Csv csv("problem,method,start,iteration,seconds,objective");
-  for (const StudyRun& run : runs) {
-    for (const IterationRecord& record : run.trace) {
-      csv.Add(run.problem).Add(run.method).Add(run.start);
-      csv.Add(record.iteration).Add(record.seconds).Add(record.minimised());
-      csv.EndRow();
-    }
-  }
-  return csv.text();
 }
 
 }  // namespace trilobe

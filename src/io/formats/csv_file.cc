@@ -31,41 +31,50 @@ SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
 // Writes a row per sample, with as many digits as read back to the same numbers: its directions,
 // and so many columns of values. Samples on a grid stand at the centres of its bins,
 // with phi_i = 0.
-void WriteRows(const std::string& path, const std::string& head, const BrdfSamples& samples,
-               size_t columns, const std::function<void(int, std::span<double>)>& values) {
-  WriteFile(path, [&](std::ostream& out) {
-    out << head << '\n';
-    std::vector<double> of_row(columns);
-    std::vector<char> row((kAngles + columns) * 32);  // the longest double has 24 characters
-    for (int j = 0; j < samples.size(); ++j) {
-      char* end = row.data();
-      const auto add = [&](double number) {
-        end = std::to_chars(end, row.data() + row.size(), number).ptr;
-        *end++ = ',';
-      };
-      const SphericalAngles at =
-          samples.directions.empty() ? FromIncidentPlane(samples.Angles(j)) : samples.directions[j];
-      for (const double angle : {at.theta_i, at.phi_i, at.theta_o, at.phi_o}) {
-        add(RadiansToDegrees(angle));
-      }
-      values(j, of_row);
-      for (const double value : of_row) add(value);
-      end[-1] = '\n';
-      out.write(row.data(), end - row.data());
-    }
-  });
+void WriteRows(
+    const std::string& path, const std::string& head, const BrdfSamples& samples, size_t columns,
+    const std::function<void(int, std::span<double>)>& values,
+    const BeforeRenaming& before_renaming = [](std::string_view) {}) {
+  WriteFile(
+      path,
+      [&](std::ostream& out) {
+        out << head << '\n';
+        std::vector<double> of_row(columns);
+        std::vector<char> row((kAngles + columns) * 32);  // the longest double has 24 characters
+        for (int j = 0; j < samples.size(); ++j) {
+          char* end = row.data();
+          const auto add = [&](double number) {
+            end = std::to_chars(end, row.data() + row.size(), number).ptr;
+            *end++ = ',';
+          };
+          const SphericalAngles at = samples.directions.empty()
+                                         ? FromIncidentPlane(samples.Angles(j))
+                                         : samples.directions[j];
+          for (const double angle : {at.theta_i, at.phi_i, at.theta_o, at.phi_o}) {
+            add(RadiansToDegrees(angle));
+          }
+          values(j, of_row);
+          for (const double value : of_row) add(value);
+          end[-1] = '\n';
+          out.write(row.data(), end - row.data());
+        }
+      },
+      before_renaming);
 }
 
 // Writes the valid samples. Throws Error where there is none.
-std::string WriteCsv(const Measurement& measurement, const std::string& path, int /*num_threads*/) {
+std::string WriteCsv(const Measurement& measurement, const std::string& path, int /*num_threads*/,
+                     const BeforeRenaming& before_renaming) {
   const std::optional<BrdfSamples> of_table =
       measurement.table ? std::optional(SamplesOf(measurement)) : std::nullopt;
   const BrdfSamples& samples = of_table ? *of_table : measurement.samples;
   if (samples.size() == 0) SamplesOf(measurement);  // throws
   const std::string count = std::to_string(samples.size());
-  WriteRows(path, "# BRDF [1/sr] of " + count + " pairs of directions [degrees]\n" + kUsualColumns,
-            samples, kChannels,
-            [&](int j, std::span<double> row) { std::ranges::copy(samples.rho[j], row.begin()); });
+  WriteRows(
+      path, "# BRDF [1/sr] of " + count + " pairs of directions [degrees]\n" + kUsualColumns,
+      samples, kChannels,
+      [&](int j, std::span<double> row) { std::ranges::copy(samples.rho[j], row.begin()); },
+      before_renaming);
   return count + " samples";
 }
 

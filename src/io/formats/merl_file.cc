@@ -86,25 +86,29 @@ BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const Mer
 
 BrdfTable ReadMerl(const std::string& path) { return ParseMerl(ReadFile(path), path); }
 
-void WriteMerl(const BrdfTable& table, const std::string& path) {
+void WriteMerl(const BrdfTable& table, const std::string& path,
+               const BeforeRenaming& before_renaming) {
   CheckTable(table);
   const Dimensions dimensions = DimensionsOf({});
   if (DimensionsOf(table.grid) != dimensions) {
     throw Error("cannot write '" + path + "': a MERL file has " + ToString(dimensions) +
                 " bins, this table has " + ToString(DimensionsOf(table.grid)));
   }
-  WriteFile(path, [&](std::ostream& out) {
-    std::array<char, kHeaderSize> header{};
-    std::memcpy(header.data(), dimensions.data(), kHeaderSize);
-    out.write(header.data(), kHeaderSize);
-    for (std::vector<double> plane : table.stored) {
-      for (int bin = 0; bin < table.grid.size(); ++bin) {
-        if (ReasonOf(table, bin) != Unmeasured::kNo) plane[bin] = -1;
-      }
-      out.write(reinterpret_cast<const char*>(plane.data()),
-                static_cast<std::streamsize>(PlaneSize(table.grid)));
-    }
-  });
+  WriteFile(
+      path,
+      [&](std::ostream& out) {
+        std::array<char, kHeaderSize> header{};
+        std::memcpy(header.data(), dimensions.data(), kHeaderSize);
+        out.write(header.data(), kHeaderSize);
+        for (std::vector<double> plane : table.stored) {
+          for (int bin = 0; bin < table.grid.size(); ++bin) {
+            if (ReasonOf(table, bin) != Unmeasured::kNo) plane[bin] = -1;
+          }
+          out.write(reinterpret_cast<const char*>(plane.data()),
+                    static_cast<std::streamsize>(PlaneSize(table.grid)));
+        }
+      },
+      before_renaming);
 }
 
 namespace {
@@ -130,9 +134,10 @@ MeasurementFormat MerlFormat() {
               },
           .written_as = "MERL layout",
           .write =
-              [](const Measurement& measurement, const std::string& path, int) {
+              [](const Measurement& measurement, const std::string& path, int,
+                 const BeforeRenaming& before_renaming) {
                 const BrdfTable& table = TableOf(measurement);
-                WriteMerl(table, path);
+                WriteMerl(table, path, before_renaming);
                 return ValidText(CountBins(table), "bins");
               }};
 }

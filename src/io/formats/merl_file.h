@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/files/file.h"
 #include "trilobe/model/measurement/brdf_table.h"
 
 namespace trilobe {
@@ -14,7 +15,10 @@ namespace trilobe {
 // ParseMerl can read the format on another grid.
 BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid = {});
 BrdfTable ReadMerl(const std::string& path);
-void WriteMerl(const BrdfTable& table, const std::string& path);
+// `before_renaming`: as of WriteFile.
+void WriteMerl(
+    const BrdfTable& table, const std::string& path,
+    const BeforeRenaming& before_renaming = [](std::string_view) {});
 
 }  // namespace trilobe
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -115,6 +116,7 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
   const Content content = RecogniseContent(bytes);
   const bool is_text = content.kind == Content::Kind::kText;
+  if (is_text) CheckLines(bytes, source);
   if (is_text && (is_table || IsTable(bytes))) return FindNamed("format", "csv", formats);
   if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
@@ -148,6 +150,47 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
   note(!options.columns.empty(), "csv", "--columns is of text tables");
   note(options.theta_i_deg != -1, "csv", "--theta_i is of text tables");
   note(!options.bands.empty() && measurement->bands == 0, "", "--bands is of spectra");
+}
+
+// Applies `change`, which notes what it does, unless an option keeps the readings. An option that
+// keeps them from nothing is noted instead.
+void ChangeUnless(bool kept, const std::string& what, Measurement* measurement,
+                  const std::function<void(Measurement*)>& change) {
+  if (!kept) {
+    change(measurement);
+    return;
+  }
+  Measurement changed = *measurement;
+  change(&changed);
+  if (changed.notes.size() > measurement->notes.size()) return;
+  measurement->notes.push_back(what + ", and changes nothing here");
+}
+
+// Leaves out, or mends, readings that the options do not keep. `is_rgl`: the options have told its
+// reader what to extrapolate.
+void DropBadReadings(const SourceOptions& options, bool is_rgl, Measurement* measurement) {
+  const int threads = options.num_threads;
+  if (is_rgl || measurement->table) {
+    if (!options.extrapolated) LeaveOutFill(measurement);
+  } else {
+    ChangeUnless(options.extrapolated, "--extrapolated takes samples that seem to be filled in",
+                 measurement, LeaveOutFill);
+  }
+  if (options.as_they_are) {
+    if (options.outliers || options.dark_noise) {
+      measurement->notes.emplace_back(
+          "all readings are copied as they are: --outliers and --dark_noise change nothing here");
+    }
+    return;
+  }
+  if (!options.outliers) LeaveOutZeroGaps(measurement);
+  ChangeUnless(options.dark_noise, "--dark_noise takes readings of a table that are lost in it",
+               measurement, [&](Measurement* of) { SmoothDarkReadings(threads, of); });
+  ChangeUnless(options.outliers, "--outliers takes readings that are far off those around them",
+               measurement, [&](Measurement* of) {
+                 if (options.outliers) LeaveOutZeroGaps(of);
+                 LeaveOutOutliers(threads, of);
+               });
 }
 
 // The tilt that the highlight shows, 0 if it shows none, with a note that says so.
@@ -237,11 +280,14 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
 }
 
 const MeasurementFormat* RecogniseFormat(std::string_view bytes) {
+  constexpr size_t kBeginning = 1 << 16;  // by which a text is recognised
   const Content::Kind kind = RecogniseContent(bytes).kind;
   if (kind == Content::Kind::kForeign) return nullptr;
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
   const auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
-    return format.is_json == (kind == Content::Kind::kJson) && format.recognise(bytes);
+    if (format.is_json != (kind == Content::Kind::kJson)) return false;
+    return format.recognise(format.is_text && !format.is_json ? bytes.substr(0, kBeginning)
+                                                              : bytes);
   });
   return found == formats.end() ? nullptr : &*found;
 }
@@ -265,9 +311,9 @@ const MeasurementFormat& WritableFormat(const std::string& path) {
 }
 
 std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
-                             int num_threads) {
+                             int num_threads, const BeforeRenaming& before_renaming) {
   const MeasurementFormat& format = WritableFormat(path);
-  return format.written_as + ", " + format.write(measurement, path, num_threads);
+  return format.written_as + ", " + format.write(measurement, path, num_threads, before_renaming);
 }
 
 bool IsSynthetic(std::string_view name) { return name.starts_with(kSynth); }
@@ -362,10 +408,8 @@ Measurement Source::Read(const SourceOptions& options) const {
   CorruptBy(options, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
-  if (!options.extrapolated) LeaveOutFill(&measurement);
-  if (!options.outliers) LeaveOutZeroGaps(&measurement);
-  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
-  if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
+  const MeasurementFormat* const format = synthetic() ? nullptr : RecogniseFormat(bytes_);
+  DropBadReadings(options, format != nullptr && format->name == "rgl", &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
 }

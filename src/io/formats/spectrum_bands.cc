@@ -53,7 +53,10 @@ std::string Advice(std::span<const double> wavelengths) {
   std::vector<double> from_longest(wavelengths.begin(), wavelengths.end());
   std::ranges::sort(from_longest, std::greater<>());
   const auto text = [&](size_t k) { return Text(from_longest[k], kDigits); };
-  const size_t last = wavelengths.size() - 1, middle = wavelengths.size() / 2;
+  const auto same =
+      std::ranges::unique(from_longest, {}, [](double x) { return Text(x, kDigits); });
+  from_longest.erase(same.begin(), same.end());
+  const size_t last = from_longest.size() - 1, middle = from_longest.size() / 2;
   std::string three;
   if (last >= 2) {
     three = " --bands=" + text(0) + "," + text(middle) + "," + text(last) +

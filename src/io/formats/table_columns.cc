@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -185,10 +186,22 @@ ValueScale TakeScale(std::string* key) {
   return ValueScale::kLinear;
 }
 
+// Whether a number behind this is negative: "-", "lambda = -", but not "brdf-".
+bool IsSigned(std::string_view before) {
+  for (const std::string_view minus : {"-", "\u2212"}) {
+    if (!before.ends_with(minus)) continue;
+    before.remove_suffix(minus.size());
+    return before.empty() || std::isalnum(static_cast<unsigned char>(before.back())) == 0;
+  }
+  return false;
+}
+
 // [nm] "550", "550nm", "0.55 um", "brdf_550", "lambda=550nm"; none for what is no wavelength.
 std::optional<double> WavelengthIn(std::string_view plain, std::string_view unit) {
   const size_t first = std::min(plain.find_first_of("0123456789"), plain.size());
-  const std::string word = LettersAndDigits(plain.substr(0, first));
+  const std::string_view before = plain.substr(0, first);
+  const std::string word = LettersAndDigits(before);
+  if (IsSigned(before)) return std::nullopt;
   if (!word.empty() && word != "lambda" && word != "wl" && word != "wavelength" && word != "r" &&
       !IsOneOf(word, kValues)) {
     return std::nullopt;
@@ -258,14 +271,16 @@ class ColumnLayouter {
   std::optional<size_t> One(Role role) {
     const std::vector<size_t> found = All(role);
     if (found.empty()) return std::nullopt;
-    if (found.size() > 1) {
-      lines_.Fail("the header has " + std::to_string(layout_.columns.size()) + " columns, and '" +
-                  layout_.columns[found[0]].name + "' and '" + layout_.columns[found[1]].name +
-                  "' say the same; --columns=" + kUsualColumns +
-                  " names those to read, - the others");
-    }
+    if (found.size() > 1) FailAsTheSame(found[0], found[1]);
     is_read_[found[0]] = true;
     return found[0];
+  }
+
+  [[noreturn]] void FailAsTheSame(size_t one, size_t other) const {
+    lines_.Fail("the header has " + std::to_string(layout_.columns.size()) + " columns, and '" +
+                layout_.columns[one].name + "' and '" + layout_.columns[other].name +
+                "' say the same; --columns=" + kUsualColumns +
+                " names those to read, - the others");
   }
 
   [[noreturn]] void FailWithout(const std::string& column, const std::string& advice) const {
@@ -341,6 +356,8 @@ class ColumnLayouter {
   void LayBands(std::vector<size_t> bands) {
     const auto wavelength = [&](size_t k) { return layout_.columns[k].wavelength; };
     std::ranges::sort(bands, {}, wavelength);
+    const auto twice = std::ranges::adjacent_find(bands, {}, wavelength);
+    if (twice != bands.end()) FailAsTheSame(*twice, *std::next(twice));
     for (const size_t k : bands) {
       is_read_[k] = true;
       layout_.wavelengths.push_back(wavelength(k));

@@ -425,6 +425,7 @@ std::string TableReader::Note(bool turned) const {
 
 Measurement ReadTextTable(std::string_view text, const std::string& source,
                           const SourceOptions& options) {
+  CheckLines(text, source);
   const bool named = NamesAxes(options.columns);
   if (!named && (!options.columns.empty() || !HasAxes(text))) {
     return TableReader(text, source, options).Read();

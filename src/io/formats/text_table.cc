@@ -117,6 +117,18 @@ bool IsNumber(std::string_view cell) {
 
 }  // namespace
 
+void CheckLines(std::string_view text, const std::string& source) {
+  constexpr int kMostCells = 100000;
+  TextLines lines(text, source);
+  while (lines.NextWithComment()) {
+    if (lines.line().size() <= kMostCells) continue;
+    for (const char separator : kSeparators) {
+      if (std::ranges::count(lines.line(), separator) < kMostCells) continue;
+      lines.Fail("more than " + std::to_string(kMostCells) + " cells, which no table has");
+    }
+  }
+}
+
 void SplitRow(std::string_view line, char separator, std::vector<std::string_view>* cells) {
   cells->clear();
   if (line.find('"') != std::string_view::npos || separator == kBlanks) {

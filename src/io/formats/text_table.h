@@ -47,6 +47,9 @@ bool LooksLikeRow(std::string_view line, size_t fewest = kFewestNumbers);
 // Whether the first line that is neither a comment nor, up to some, text could be a row.
 bool IsTableOfNumbers(std::string_view text);
 
+// Throws Error for a line of more cells than any table has, before they take memory.
+void CheckLines(std::string_view text, const std::string& source);
+
 // Cells of a row without quotes and white space at their ends.
 void SplitRow(std::string_view line, char separator, std::vector<std::string_view>* cells);
 

@@ -164,18 +164,22 @@ Measurement ParseUtia(std::string_view bytes, const std::string& source,
   return measurement;
 }
 
-void WriteUtia(const Measurement& scattered, const std::string& path) {
+void WriteUtia(const Measurement& scattered, const std::string& path,
+               const BeforeRenaming& before_renaming) {
   const NodeTable values = ValuesAtNodes(scattered, kUtiaGrid);
   std::vector<double> plane(values.rho.size());
-  WriteFile(path, [&](std::ostream& out) {
-    for (int c = 0; c < kChannels; ++c) {
-      for (size_t k = 0; k < plane.size(); ++k) {
-        plane[k] = values.present[k] ? values.rho[k][c] : -1;
-      }
-      out.write(reinterpret_cast<const char*>(plane.data()),
-                static_cast<std::streamsize>(sizeof(double) * plane.size()));
-    }
-  });
+  WriteFile(
+      path,
+      [&](std::ostream& out) {
+        for (int c = 0; c < kChannels; ++c) {
+          for (size_t k = 0; k < plane.size(); ++k) {
+            plane[k] = values.present[k] ? values.rho[k][c] : -1;
+          }
+          out.write(reinterpret_cast<const char*>(plane.data()),
+                    static_cast<std::streamsize>(sizeof(double) * plane.size()));
+        }
+      },
+      before_renaming);
 }
 
 namespace {
@@ -201,9 +205,10 @@ MeasurementFormat UtiaFormat() {
           .written_as = "UTIA layout",
           .holds_anisotropic = true,
           .write =
-              [](const Measurement& measurement, const std::string& path, int num_threads) {
+              [](const Measurement& measurement, const std::string& path, int num_threads,
+                 const BeforeRenaming& before_renaming) {
                 const Measurement at_nodes = AtNodes(measurement, kUtiaGrid, num_threads);
-                WriteUtia(at_nodes, path);
+                WriteUtia(at_nodes, path, before_renaming);
                 return ValidText(at_nodes.counts, "pairs of directions");
               }};
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/files/file.h"
 #include "trilobe/model/measurement/hemisphere_grid.h"
 #include "trilobe/model/measurement/measurement.h"
 
@@ -32,7 +33,10 @@ Measurement ParseUtia(std::string_view bytes, const std::string& source,
 
 // Writes samples at these directions as BRDF [1/sr], and -1 for missing ones. Throws Error if a
 // sample is at another direction or two are at the same.
-void WriteUtia(const Measurement& scattered, const std::string& path);
+// `before_renaming`: as of WriteFile.
+void WriteUtia(
+    const Measurement& scattered, const std::string& path,
+    const BeforeRenaming& before_renaming = [](std::string_view) {});
 
 }  // namespace trilobe
 

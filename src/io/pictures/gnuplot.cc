@@ -24,6 +24,7 @@
 
 #include "core/base/text.h"
 #include "core/files/file.h"
+#include "core/files/own_mark.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
@@ -260,7 +261,8 @@ namespace {
 
 void Draw(const std::string& path, const PictureFormat& format, const std::string& script,
           double max_seconds) {
-  const std::string picture = RunGnuplot(path, format, CommonStyle(format) + script, max_seconds);
+  const std::string picture =
+      MarkedPicture(RunGnuplot(path, format, CommonStyle(format) + script, max_seconds));
   WriteFile(path, [&](std::ostream& out) {
     out.write(picture.data(), static_cast<std::streamsize>(picture.size()));
   });

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <ostream>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "core/files/content.h"
 #include "core/files/file.h"
+#include "core/files/own_mark.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 
@@ -177,7 +179,7 @@ void WritePng(const std::string& path, int width, int height, const std::string&
                              width * kChannels) == 0) {
     throw Error(path + ": cannot encode the picture");
   }
-  WriteFile(path, [&](std::ostream& out) { out << png; });
+  WriteFile(path, [&](std::ostream& out) { out << MarkedPicture(std::move(png)); });
 }
 
 }  // namespace trilobe

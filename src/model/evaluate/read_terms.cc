@@ -43,7 +43,7 @@ TermRead ReadRead(const JsonNode& node, const std::vector<TableSet>& sets) {
   return read;
 }
 
-TermSpec ReadSpec(const JsonNode& root) {
+TermSpec ReadTermSpec(const JsonNode& root) {
   TermSpec spec;
   spec.channels = root["channels"].Integer(kMaxTermChannels);
   const JsonNode sets = root["tables"], terms = root["terms"];
@@ -87,7 +87,7 @@ TermFile ParseTerms(std::string_view text, const std::string& source) {
   }
   const auto model_of = [&] {
     try {
-      return TermModel(ReadSpec(root));
+      return TermModel(ReadTermSpec(root));
     } catch (const Error& error) {
       if (std::string(error.what()).starts_with(source)) throw;
       throw Error(source + ": " + error.what());

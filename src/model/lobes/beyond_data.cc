@@ -24,7 +24,7 @@ void FillUnobservedBins(std::span<const double> coverage, int looked_at, std::sp
   for (int k = 0; k <= size; ++k) {
     if (k < size && !(coverage[k] > 0)) continue;
     if (left < 0 && k == size) return;  // no observed bin at all
-    const double beyond = k == size ? Median(last) : 0;
+    const double beyond = k == size ? UpperMedian(last) : 0;
     for (int gap = left + 1; gap < k; ++gap) {
       const double t = static_cast<double>(gap - left) / (k - left);
       table[gap] = left < 0 ? table[k] : k == size ? beyond : (1 - t) * table[left] + t * table[k];
@@ -195,7 +195,7 @@ void DimBeyondData(std::span<const double> coverage, int num_threads, FactorMode
          std::span(observed[t]).last(std::min<size_t>(observed[t].size(), kLookedAt))) {
       last.push_back(reflected(k));
     }
-    const double most = Median(last);
+    const double most = UpperMedian(last);
     for (int k = observed[t].back() + 1; k < spec.d_axis.size; ++k) {
       if (reflected(k) > most) model->table(Factor::kD, t)[k] *= most / reflected(k);
     }

@@ -37,7 +37,7 @@ void SetCanonicalScale(std::span<const double> coverage, FactorModel* model, int
 // to 1 over the projected solid angle. Lobes keep their places.
 void NormalizeScale(std::span<const double> coverage, FactorModel* model);
 
-// Projected solid angle of each entry of D. [axis.size]
+// Projected solid angle of each entry of a table. [axis.size]
 std::vector<double> ProjectedAngles(const Axis& axis);
 
 // Integral of D over the projected hemisphere; D is constant in each bin or node's cell.

@@ -7,23 +7,33 @@
 
 namespace trilobe {
 
-// How alike two lobes are, from 0 to 1: the product of the congruences (cosines of the angle
-// between two arrays) of D, weighted by the projected solid angles of its entries, of G, of s, and
-// of F if lobes have their own (Tomasi and Bro 2006, "factor match score"). 1 for lobes that differ
-// in scale alone; 0 if either is black. Entries that no data touch in either model do not count.
-// Independent of the gauge.
-double LobeMatch(const ModelFile& a, int a_lobe, const ModelFile& b, int b_lobe);
-
-// The lobes of a model in the order of another's.
-struct LobeOrderMatch {
-  std::vector<int> lobe;      // of `model`, for each lobe of `reference`
-  std::vector<double> match;  // LobeMatch of the two
-  double least() const;       // 1 without lobes
+// How alike the lobes of two models are, from 0 to 1 (docs/study.md). All of it is independent
+// of the gauge and of the order of the lobes.
+struct LobeMatch {
+  // The mean match of all lobes of both models with their partners, weighted by the light that
+  // they reflect (LobeLight). 1 if no lobe of either reflects any.
+  double agreement = 1;
+  // The partner in `model` of each lobe of `reference`, or -1 where `model` has fewer.
+  std::vector<int> lobe;
+  // How alike the two are, 0 without a partner: the light that they share, in each channel the
+  // smaller of the two, over the larger, summed over the channels; times the cosines between their
+  // tables of D, F and G. A lobe that is five times as strong matches to 0.2 at most.
+  std::vector<double> match;
 };
 
-// The assignment of the largest sum of matches; of equal ones the first in lexical order. Throws
-// Error unless both models have the same spec.
-LobeOrderMatch MatchLobes(const ModelFile& reference, const ModelFile& model);
+// The partners are those of the largest agreement; of equal ones the first in lexical order. Throws
+// Error unless both models share tables alike and have them on the same axes. Lobes whose stretches
+// differ do not match.
+LobeMatch MatchLobes(const ModelFile& reference, const ModelFile& model);
+
+// Whether MatchLobes can compare models of these specs.
+bool HaveComparableLobes(const ModelSpec& a, const ModelSpec& b);
+
+// The cosine between the tables in which two lobes read a factor, entries weighted by the projected
+// solid angle of their directions. Of tables a channel, the mean, weighted by the light of both
+// lobes in the channel, `light`. Entries that are unobserved in either model do not count.
+double FactorCosine(Factor factor, const ModelFile& a, int a_lobe, const ModelFile& b, int b_lobe,
+                    const Rgb& light);
 
 }  // namespace trilobe
 

@@ -235,7 +235,7 @@ AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
   }
   constexpr size_t kFewestIncidences = 2;  // one may stand near a highlight
   if (inner.size() < kFewestIncidences) return {};
-  return {.near_normal = Median(inner), .near_horizon = Median(outer)};
+  return {.near_normal = UpperMedian(inner), .near_horizon = UpperMedian(outer)};
 }
 
 namespace {
@@ -263,7 +263,7 @@ class PlaneScan {
     for (size_t k = 1; k < values_.size(); ++k) {
       steps.push_back(values_[k].first - values_[k - 1].first);
     }
-    const double step = std::max(Median(std::move(steps)), DegreesToRadians(0.1));
+    const double step = std::max(UpperMedian(std::move(steps)), DegreesToRadians(0.1));
     double sum = 0;
     for (double ring = step; centre + ring < kPi / 2; ring += step) {
       sum += std::min(At(centre - ring), At(centre + ring)) * std::cos(centre + ring) * 2 * kPi *
@@ -303,7 +303,7 @@ double ReflectedLightOfScans(const BrdfSamples& samples) {
   for (auto& [light, scan] : scans) {
     if (const double albedo = scan.Albedo(); albedo > 0) albedos.push_back(albedo);
   }
-  return albedos.empty() ? 0 : Median(std::move(albedos));
+  return albedos.empty() ? 0 : UpperMedian(std::move(albedos));
 }
 
 }  // namespace trilobe

@@ -24,5 +24,17 @@ TEST(ValidUtf8, ShowsOtherBytes) {
   EXPECT_EQ(EscapedMarkup("\xe9<"), "\\xe9&lt;");
 }
 
+// A name may not run in a spreadsheet.
+TEST(CsvField, IsNoFormula) {
+  EXPECT_EQ(CsvField("copper"), "copper");
+  EXPECT_EQ(CsvField("a,b"), "\"a,b\"");
+  EXPECT_EQ(CsvField("a;=b"), "\"a;=b\"");
+  EXPECT_EQ(CsvField("say \"x\""), "\"say \"\"x\"\"\"");
+  for (const std::string name : {"=1+1", "+1", "-1", "@a", "\tx", "\rx", "'=1"}) {
+    EXPECT_EQ(CsvField(name), "\"'" + name + "\"");
+  }
+  EXPECT_EQ(CsvField("a=b"), "a=b");
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

@@ -208,7 +208,8 @@ TEST(WriteFile, IsNotInTheWayOfWhatAKilledRunLeft) {
   // Killed before it can rename, many times, so that names could collide if they were not random.
   for (int k = 0; k < 5; ++k) {
     EXPECT_EXIT(WriteFile(
-                    path, [](std::ostream& out) { out << "half"; }, [] { std::raise(SIGKILL); }),
+                    path, [](std::ostream& out) { out << "half"; },
+                    [](std::string_view) { std::raise(SIGKILL); }),
                 testing::KilledBySignal(SIGKILL), "");
   }
   EXPECT_EQ(directory.Names().size(), 5U);
@@ -227,7 +228,7 @@ TEST(SweepTemporaryFiles, LeavesWhatIsStillBeingWritten) {
   const std::string path = directory.Path("file");
   WriteFile(
       path, [](std::ostream& out) { out << "new"; },
-      [&] {
+      [&](std::string_view) {
         SweepTemporaryFiles(directory.path());
         EXPECT_EQ(directory.Names().size(), 1U);
       });
@@ -240,9 +241,13 @@ TEST(WriteFile, ShowsTheOldFileUntilTheNewOneIsWhole) {
   const std::string path = directory.Make("file", "old");
   WriteFile(
       path, [](std::ostream& out) { out << "new"; },
-      [&] { EXPECT_EQ(TestDirectory::Content(path), "old"); });
+      [&](std::string_view content) {
+        EXPECT_EQ(content, "new");
+        EXPECT_EQ(TestDirectory::Content(path), "old");
+      });
   EXPECT_THROW(WriteFile(
-                   path, [](std::ostream& out) { out << "newer"; }, [] { throw Error("no"); }),
+                   path, [](std::ostream& out) { out << "newer"; },
+                   [](std::string_view) { throw Error("no"); }),
                Error);
   EXPECT_EQ(TestDirectory::Content(path), "new");
   EXPECT_THAT(directory.Names(), ElementsAre("file"));

@@ -50,7 +50,7 @@ TEST(Arguments, OptionsOfSources) {
 TEST(Arguments, OptionsThatASourceDoesNotReadAreTold) {
   const SourceOptions options = {.noise = 0.1, .extrapolated = true, .radiometry = "srgb"};
   EXPECT_THAT(Source("x.csv", kCsv).Read(options).notes,
-              ElementsAre(HasSubstr("--noise"), HasSubstr("--radiom")));
+              ElementsAre(HasSubstr("--noise"), HasSubstr("--radiom"), HasSubstr("--extrapol")));
   EXPECT_THAT(LoadMeasurement("synth:felt@4x4x4", options).notes,
               ElementsAre(HasSubstr("--extrapolated"), HasSubstr("--radiometry")));
   EXPECT_THAT(Source("x.csv", kCsv).Read().notes, ElementsAre());

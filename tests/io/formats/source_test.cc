@@ -128,6 +128,34 @@ TEST(LoadMeasurement, IsATableOrScattered) {
   EXPECT_EQ(SamplesOf(limited).rho, (std::vector<Rgb>{{4, 5, 6}}));
 }
 
+// A flag for what the data have not is told, as is one that their format does not read.
+TEST(LoadMeasurement, SaysWhichOptionsChangeNothing) {
+  const TestDirectory directory;
+  const auto notes = [](const std::string& source, const SourceOptions& options) {
+    std::string text;
+    for (const std::string& note : LoadMeasurement(source, options).notes) text += note + "\n";
+    return text;
+  };
+  const auto nothing = testing::HasSubstr("changes nothing here");
+  for (const SourceOptions& options :
+       {SourceOptions{.extrapolated = true}, {.outliers = true}, {.dark_noise = true}}) {
+    EXPECT_THAT(notes("synth:felt@12x12x24", options), nothing);
+    EXPECT_THAT(notes("synth:felt@6x12", options), nothing);
+  }
+  EXPECT_EQ(notes("synth:felt@12x12x24", {.as_they_are = true}), "");
+
+  BrdfTable table = LoadTable("synth:felt");
+  for (int bin = 0; bin < 40; ++bin) {
+    const int at = table.grid.Index(20, 2 * bin, 90);
+    for (std::vector<double>& plane : table.stored) plane[at] *= 1000;
+  }
+  const std::string spoiled = directory.Path("spoiled.binary");
+  WriteMerl(table, spoiled);
+  EXPECT_THAT(notes(spoiled, {}), HasSubstr("--outliers takes them"));
+  EXPECT_THAT(notes(spoiled, {.outliers = true}), testing::Not(nothing));
+  EXPECT_THAT(notes(spoiled, {.dark_noise = true}), HasSubstr("--dark_noise takes"));
+}
+
 TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
   const TestDirectory directory;
   const std::string text = "theta,phi\n1,2\n";

@@ -207,6 +207,19 @@ TEST(AwlsAccelerated, OutrunsAwls) {
   }
 }
 
+// The claim is that of docs/decisions/sweeps.md.
+TEST(AwlsBlock, BeginsWithThreeSweepsOfAwls) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective = MakeObjective(RandomTable(kGrid, 2), spec);
+  const auto fitted = [&](const char* solver, int iterations) {
+    FactorModel model = RandomModel(spec, 2);
+    MakeSolver(solver)->Solve(objective, Iterations(iterations), &model);
+    return std::vector<double>(model.parameters().begin(), model.parameters().end());
+  };
+  EXPECT_EQ(fitted("awls_block", 3), fitted("awls", 3));
+  EXPECT_NE(fitted("awls_block", 4), fitted("awls", 4));
+}
+
 TEST(AwlsAccelerated, WithoutMemoryIsAwlsBlock) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);

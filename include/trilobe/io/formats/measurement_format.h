@@ -2,6 +2,7 @@
 #define TRILOBE_IO_FORMATS_MEASUREMENT_FORMAT_H_
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,10 +42,14 @@ struct SourceOptions {
   // Wavelengths [nm] of spectra, "650,550,450": one for all channels, three as r, g and b, the
   // longest as r, or more to make a colour of; "": all.
   std::string bands = {};
+  // Readings are copied: as if `outliers` and `dark_noise` were set, which change nothing then.
+  bool as_they_are = false;
 };
 
 // Throws Error, with the option's flag and value, if one is out of range.
 void CheckSourceOptions(const SourceOptions& options);
+
+using BeforeRenaming = std::function<void(std::string_view content)>;
 
 // A file format of measurements. A function `MeasurementFormat NAMEFormat()` in the file of its
 // reader and writer defines it; source.cc declares and lists these functions by NAME.
@@ -66,9 +71,10 @@ struct MeasurementFormat {
   std::string written_as = {};
   bool holds_anisotropic = false;
   // Returns what was written, for a message: "12 samples". Throws Error, and leaves no file, if the
-  // format cannot hold the data.
-  std::string (*write)(const Measurement& measurement, const std::string& path,
-                       int num_threads) = nullptr;
+  // format cannot hold the data. `before_renaming` is called with the content when it is complete
+  // and before it replaces what is at `path`, which stays if this throws.
+  std::string (*write)(const Measurement& measurement, const std::string& path, int num_threads,
+                       const BeforeRenaming& before_renaming) = nullptr;
 };
 
 // Adapts a parser without options to `read`.

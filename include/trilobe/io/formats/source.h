@@ -92,9 +92,11 @@ void CheckMayBeJson(std::string_view bytes, const std::string& what);
 const MeasurementFormat& WritableFormat(const std::string& path);
 
 // Writes a measurement in WritableFormat(path). Returns a description for a message: "CSV, 12
-// samples". Throws Error if the format cannot hold the data.
-std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
-                             int num_threads = 1);
+// samples". Throws Error if the format cannot hold the data. `before_renaming`: as of
+// MeasurementFormat::write.
+std::string WriteMeasurement(
+    const Measurement& measurement, const std::string& path, int num_threads = 1,
+    const BeforeRenaming& before_renaming = [](std::string_view) {});
 
 }  // namespace trilobe
 

@@ -1,0 +1,113 @@
+#include "core/files/own_mark.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::json;
+using std::string_view_literals::operator""sv;
+
+constexpr std::string_view kPng = "\x89PNG\r\n\x1A\n"sv;
+// A chunk of PNG: its length, its name, "Software", "Trilobe", and the checksum of these.
+constexpr std::string_view kPngMark = "\0\0\0\x10tEXtSoftware\0Trilobe\xE8\x34\x95\x18"sv;
+constexpr std::string_view kPngEnd = "\0\0\0\0IEND\xAE\x42\x60\x82"sv;
+
+// How the tables begin that this program writes, whatever columns a version adds at the end.
+constexpr std::array kTables = {
+    "iteration,seconds,objective,"sv,  // traces, convergence
+    "name,source,state,verdict,"sv,    // fits
+    "problem,method,"sv,               // studies
+    "profile,method,"sv,
+    "theta_i,phi_i,theta_o,phi_o,measured_r,measured_g,measured_b,fitted_r"sv,  // convert --at
+    "# BRDF [1/sr] of "sv};                                                     // measurements
+
+// Files for renderers have one of these near their beginnings.
+constexpr std::array kPhrases = {kOwnMark, "<Manufacturer>Trilobe</Manufacturer>"sv,
+                                 ": a model of Trilobe, for "sv, "found by trilobe "sv};
+
+// The same of a plan for people, whose first column is as wide as its names are long.
+constexpr std::string_view kPlanBegins = "material ", kPlanColumns = " lobes   stored  of full ";
+
+bool Has(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+// The value of a member, if it is a string.
+std::string StringIn(const Json& json, const char* member) {
+  const auto found = json.find(member);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+bool IsOwnJson(std::string_view bytes) {
+  const Json json = Json::parse(bytes, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return false;
+  const std::string format = StringIn(json, "format");
+  constexpr std::array kFormats = {"trilobe-model", "trilobe-terms", kReportFormat,
+                                   kPlanFormat,     kFormsFormat,    kStudyFormat};
+  if (std::ranges::find(kFormats, format) != kFormats.end()) return true;
+  if (format == "blender-principled") return Has(StringIn(json, "made"), "found by trilobe ");
+  if (!format.empty()) return false;
+  if (const auto metadata = json.find("metadata"); metadata != json.end()) {  // of OpenMATERIAL
+    return metadata->is_object() && Has(metadata->dump(), kOwnMark);
+  }
+  // Reports, plans and comparisons of forms by earlier versions.
+  const auto has = [&](const char* member) { return json.contains(member); };
+  return (has("run") && has("files") && (has("key") || has("unfinished"))) ||
+         (has("scene") && has("materials") && has("threads")) ||
+         (has("model") && has("source") && has("forms"));
+}
+
+bool IsOwnPage(std::string_view bytes) {
+  constexpr size_t kHead = 4096;
+  return Has(bytes.substr(0, kHead), "<meta name=\"generator\" content=\"trilobe ") ||
+         // By earlier versions.
+         Has(bytes, "<body class=\"catalogue\">") || Has(bytes, "<body class=\"study\">");
+}
+
+bool BeginsWithTag(std::string_view bytes) {
+  constexpr std::string_view kTag = "<!doctype html";
+  return bytes.size() >= kTag.size() &&
+         std::ranges::equal(bytes.substr(0, kTag.size()), kTag, [](char a, char b) {
+           return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b;
+         });
+}
+
+}  // namespace
+
+std::string MarkedPicture(std::string picture) {
+  if (SaysOwn(picture)) return picture;
+  if (picture.starts_with(kPng)) {
+    picture.insert(picture.size() - kPngEnd.size(), kPngMark);
+  } else if (picture.starts_with("%PDF-")) {
+    picture.append("% ").append(kOwnMark).append("\n");
+  } else {
+    picture.append("<!-- ").append(kOwnMark).append(" -->\n");
+  }
+  return picture;
+}
+
+bool SaysOwn(std::string_view bytes) {
+  constexpr size_t kHead = 4096, kTail = 256;
+  if (bytes.starts_with(kPng)) {
+    return bytes.ends_with(kPngEnd) &&
+           bytes.substr(0, bytes.size() - kPngEnd.size()).ends_with(kPngMark);
+  }
+  const size_t begin = bytes.find_first_not_of(" \t\r\n");
+  if (begin != std::string_view::npos && bytes[begin] == '{') return IsOwnJson(bytes);
+  if (BeginsWithTag(bytes)) return IsOwnPage(bytes);
+  if (bytes.starts_with("tensor_file"))
+    return Has(bytes, "fitted by Trilobe") || Has(bytes, "that Trilobe fitted");
+  if (bytes.starts_with(kPlanBegins) && Has(bytes.substr(0, bytes.find('\n')), kPlanColumns)) {
+    return true;
+  }
+  if (std::ranges::any_of(kTables, [&](auto head) { return bytes.starts_with(head); })) return true;
+  const std::string_view head = bytes.substr(0, kHead),
+                         tail = bytes.substr(bytes.size() - std::min(kTail, bytes.size()));
+  return Has(tail, kOwnMark) ||
+         std::ranges::any_of(kPhrases, [&](auto phrase) { return Has(head, phrase); });
+}
+
+}  // namespace trilobe
