@@ -360,16 +360,24 @@ def _materials_with(rows, column):
     return count
 
 
+def _seen(rows):
+    """By how much the PSNR of the sphere differs between the runs on a material: median and range over these."""
+    values = [[row["psnr_db"] for row in of] for of in tables.groups(rows, "material").values()]
+    return _range([max(of) - min(of) for of in values], 2)
+
+
 def _solvers_table(rows):
     """A line a solver, over all materials."""
     return tables.markdown(
         ["solver", "materials", "runs", "lobes of the lowest run, %", "lobes of its own lowest run, %",
          "own on 90 % of the starts: materials", "agreement with the lowest", "within 1 % of the lowest E, %",
-         "E above the lowest, %", "scaled gradient", "iterations", "why they stopped", "s a run"],
+         "E above the lowest, %", "scaled gradient", "iterations", "why they stopped", "PSNR differs by, dB",
+         "s a run"],
         [[solver, str(len({row["material"] for row in of})), str(len(of)), _same(of), _same(of, "own_agreement"),
-          str(_materials_with(of, "own_agreement")), _range([row["agreement"] for row in of], 2),
+          str(_materials_with(of, "own_agreement")),
+          _range([row["agreement"] for row in of if not row["reference"]], 2),
           _percent(of, lambda row: row["excess"] <= SUCCESS), _range([100 * row["excess"] for row in of]),
-          _range([row["optimality"] for row in of], 2), _range([row["iterations"] for row in of]), _stops(of),
+          _range([row["optimality"] for row in of], 2), _range([row["iterations"] for row in of]), _stops(of), _seen(of),
           f"{numpy.mean([row['seconds'] for row in of]):.2g}"]
          for solver, of in tables.groups(rows, "solver").items()])
 
