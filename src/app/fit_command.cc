@@ -99,21 +99,11 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
-<<<<<<< HEAD
-  const std::vector<std::string> taken = SceneFlags();
+  std::vector<std::string> taken = SceneFlags();
+  taken.insert(taken.end(), {"scene", "out", "force"});
   for (const auto& [flag, value] : GivenFlags(FitFlags())) {
-    if (flag == "scene" || flag == "out" || std::ranges::find(taken, flag) != taken.end()) continue;
+    if (std::ranges::find(taken, flag) != taken.end()) continue;
     throw Error("--" + flag + " is for the fit of one SOURCE, not for --scene");
-=======
-  for (const char* const flag :
-       {"init",  "model",   "stretch",        "d_nodes",        "f_bins",     "g_nodes",
-        "nodes", "prior",   "max_parameters", "robust",         "smoothness", "match_reflectance",
-        "raw",   "probe",   "convergence",    "reconstruction", "plots",      "diagnose",
-        "shard", "verbose", "spectral",       "held_out"}) {
-    if (!IsDefault(flag)) {
-      throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
-    }
->>>>>>> study
   }
   return RunSceneFit(FLAGS_scene);
 }

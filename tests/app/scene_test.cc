@@ -429,7 +429,7 @@ TEST(Scene, TakesEachFlagOrRefusesIt) {
   const std::map<std::string, std::string> taken = HelpFlags("plan"), all = HelpFlags("fit");
   EXPECT_GT(all.size(), 40);
   for (const auto& [flag, value] : all) {
-    if (flag == "scene" || flag == "out" || taken.contains(flag)) continue;
+    if (flag == "scene" || flag == "out" || flag == "force" || taken.contains(flag)) continue;
     const ProgramResult result = RunProgram({"fit", "--scene=" + scene, "--out=" + (folder / "o"),
                                              "--" + flag + "=" + OtherValue(value)});
     EXPECT_EQ(result.status, 1) << flag;

@@ -54,7 +54,7 @@ SceneFitSettings Settings(const FitCache& cache = {}) {
 }
 
 Measurement Measured(const std::string& source, double max_angle = 90) {
-  return LoadMeasurement(source, {.noise = Settings().noise, .max_angle_deg = max_angle});
+  return LoadMeasurement(source, {.noise = Settings().source.noise, .max_angle_deg = max_angle});
 }
 
 SceneMaterial Material(const std::string& source) {
