@@ -174,7 +174,8 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
-  return {{"verdict", ToJson(VerdictOn(report))},
+  return {{"format", kReportFormat},
+          {"verdict", ToJson(VerdictOn(report))},
           {"source", fit.source},
           {"source_xxh128", fit.source_xxh128},
           {"noise", report.noise},
@@ -248,7 +249,8 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"key", report.key},
           {"interrupted", report.interrupted},
           {"run", fit.run},
-          {"files", report.files}};
+          {"files", report.files},
+          {"checksums", report.checksums}};
 }
 
 void PrintDetails(const FitReport& report) {
