@@ -20,7 +20,6 @@
 #include "core/base/file_names.h"
 #include "core/base/json_text.h"
 #include "core/files/file.h"
-#include "core/files/own_mark.h"
 #include "core/system/content_hash.h"
 #include "core/system/process.h"
 #include "fit/reports/bands_report.h"
@@ -194,11 +193,10 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
   report.files = folder->Files();
   std::erase(report.files, kReportName);  // that of an unfinished run
   report.files.emplace_back(kReportName);
+  report.checksums = folder->checksums();
   report.seconds.draw = stopwatch.Lap();
-  nlohmann::ordered_json json = {{"format", kReportFormat}};
-  json.update(ToJson(report));
-  json["checksums"] = folder->checksums();
-  folder->Write(kReportName, [&](std::ostream& out) { out << JsonText(json, 2) << "\n"; });
+  folder->Write(kReportName,
+                [&report](std::ostream& out) { out << JsonText(ToJson(report), 2) << "\n"; });
   return failure;
 }
 

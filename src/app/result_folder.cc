@@ -10,8 +10,8 @@
 
 #include "app/own_files.h"
 #include "core/files/file.h"
-#include "core/files/own_mark.h"
 #include "core/system/content_hash.h"
+#include "fit/reports/fit_report.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 

@@ -508,8 +508,10 @@ TEST(ConvertTest, WritesUtiasDirections) {
   EXPECT_EQ(RunProgram({"convert", folder / "velvet.csv", "--out=" + copy}).status, 0);
   EXPECT_TRUE(Contents(velvet) == Contents(copy));
   // A table is interpolated.
-  EXPECT_THAT(RunProgram({"convert", "synth:foam@30x30x60", "--max_angle=65", "--out=" + copy}).out,
-              HasSubstr("57600 of 82944 pairs"));
+  EXPECT_THAT(
+      RunProgram({"convert", "synth:foam@30x30x60", "--max_angle=65", "--force", "--out=" + copy})
+          .out,
+      HasSubstr("57600 of 82944 pairs"));
   // Numbers in another order are told, and read all the same.
   std::string bytes = Contents(velvet), other = bytes;
   for (int row = 0; row < 3 * 288; ++row) {
@@ -518,7 +520,8 @@ TEST(ConvertTest, WritesUtiasDirections) {
     }
   }
   Write(folder / "other.bin", other);
-  const ProgramResult told = RunProgram({"convert", folder / "other.bin", "--out=" + copy});
+  const ProgramResult told =
+      RunProgram({"convert", folder / "other.bin", "--force", "--out=" + copy});
   EXPECT_EQ(told.status, 0);
   EXPECT_THAT(told.err, ContainsRegex("^trilobe: .*other.bin: the numbers look as if .*\n$"));
   EXPECT_THAT(

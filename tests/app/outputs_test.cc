@@ -296,7 +296,9 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   EXPECT_THAT(again.out, HasSubstr("] felt: kept, "));
   EXPECT_THAT(again.out, HasSubstr("] a & b: kept, "));
   EXPECT_EQ(Contents(out + "/felt/report.json"), felt);
-  ASSERT_EQ(RunProgram({"synth", "rubber", "--out=" + (folder / "data/a & b.binary")}).status, 0);
+  ASSERT_EQ(
+      RunProgram({"synth", "rubber", "--force", "--out=" + (folder / "data/a & b.binary")}).status,
+      0);
   std::filesystem::remove(out + "/felt/trace.csv");
   std::vector<std::string> shard = command;  // a & b.binary and synth:felt
   shard.emplace_back("--shard=1/2");

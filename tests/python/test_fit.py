@@ -319,7 +319,7 @@ def test_fits_many(tmp_path, monkeypatch):
 def test_names_of_a_batch_are_no_formulas():
     from trilobe._batch import _cell
 
-    for text, value in {"'=1+1": "=1+1", "''=": "'=", "'-3": "-3", "-3": -3.0, "it's": "it's", "'a": "'a", "": ""}.items():
+    for text, value in {"'=1+1": "=1+1", "''=": "'=", "'-3": "-3", "-3": -3.0, "it's": "it's", "'a": "'a"}.items():
         assert _cell(text) == value
 
 

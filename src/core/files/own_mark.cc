@@ -45,7 +45,7 @@ bool IsOwnJson(std::string_view bytes) {
   const Json json = Json::parse(bytes, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) return false;
   const std::string format = StringIn(json, "format");
-  constexpr std::array kFormats = {"trilobe-model", "trilobe-terms", kReportFormat,
+  constexpr std::array kFormats = {"trilobe-model", "trilobe-terms", "trilobe-report",
                                    kPlanFormat,     kFormsFormat,    kStudyFormat};
   if (std::ranges::find(kFormats, format) != kFormats.end()) return true;
   if (format == "blender-principled") return Has(StringIn(json, "made"), "found by trilobe ");

@@ -11,8 +11,7 @@ namespace trilobe {
 // Stands in a comment where a format has them.
 inline constexpr std::string_view kOwnMark = "written by Trilobe";
 
-// "format" of JSON files that are no models.
-inline constexpr const char* kReportFormat = "trilobe-report";
+// "format" of JSON files that are no models, nor reports.
 inline constexpr const char* kPlanFormat = "trilobe-plan";
 inline constexpr const char* kFormsFormat = "trilobe-forms";
 inline constexpr const char* kStudyFormat = "trilobe-study";

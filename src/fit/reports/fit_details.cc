@@ -183,6 +183,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
   return {
+      {"format", kReportFormat},
       {"verdict", ToJson(VerdictOn(report))},
       {"source", fit.source},
       {"source_xxh128", fit.source_xxh128},
@@ -263,7 +264,8 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
       {"key", report.key},
       {"interrupted", report.interrupted},
       {"run", fit.run},
-      {"files", report.files}};
+      {"files", report.files},
+      {"checksums", report.checksums}};
 }
 
 void PrintDetails(const FitReport& report) {

@@ -2,6 +2,7 @@
 #define TRILOBE_FIT_REPORTS_FIT_REPORT_H_
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@
 
 namespace trilobe {
 
+// "format" of report.json.
+inline constexpr const char* kReportFormat = "trilobe-report";
+
 // The report of `trilobe fit`; members that FitResult has, too, are explained there.
 struct FitReport {
   // Time of each part of the program [s]; summary.phases divides `solve`.
@@ -31,9 +35,10 @@ struct FitReport {
   };
 
   FitInfo fit;
-  std::string key;                 // FitKey: equal for repetitions of a fit
-  std::vector<std::string> files;  // of the run, in its folder
-  bool interrupted = false;        // a signal ended the solver or a later step
+  std::string key;                               // FitKey: equal for repetitions of a fit
+  std::vector<std::string> files;                // of the run, in its folder
+  std::map<std::string, std::string> checksums;  // of those that cannot say who wrote them
+  bool interrupted = false;                      // a signal ended the solver or a later step
   ModelSpec spec;
   double noise = 0;                     // of the source
   int64_t seed = 0;                     // of the fit
