@@ -112,6 +112,9 @@ def draw(experiment, folder):
     of_name = {path.stem: tables.read(path) for path in sorted(folder.glob("*.csv"))}
     if not of_name:
         raise UsageError(f"{folder} holds no tables; run the experiment first")
+    for name, rows in of_name.items():
+        if records.refresh(rows):
+            tables.write(folder / f"{name}.csv", rows)
     for name, content in experiment.module.draw(of_name, folder).items():
         if isinstance(content, str):
             (folder / name).write_text(content)

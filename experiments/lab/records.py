@@ -68,6 +68,25 @@ def excess(objective, report, material):
     return objective / least - 1 if 0 < least < math.inf else None
 
 
+def columns(report, material):
+    """What a row of a table has for `refresh`: the key of its record, in one cell, and the record's E."""
+    key = key_of(report, material)
+    least = lowest(report, material)
+    return {"record_of": " ".join(map(str, key[1:])), "record": least if math.isfinite(least) else None}
+
+
+def refresh(rows, book=BOOK):
+    """Sets `record` of the rows of `columns` to what the book says now. Returns whether one has changed."""
+    of = {(key[0], " ".join(map(str, key[1:]))): row["objective"] for key, row in read(book).items()}
+    changed = False
+    for row in rows:
+        if row.get("record_of"):
+            now = of.get((row["material"], row["record_of"]), row.get("record"))
+            changed |= now != row.get("record")
+            row["record"] = now
+    return changed
+
+
 def _is_of_data(words):
     """Whether a fit by these flags is one of the measurement as it is."""
     names = {word.removeprefix("--").partition("=")[0] for word in words}

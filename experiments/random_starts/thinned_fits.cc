@@ -13,6 +13,7 @@
 #include "core/files/text_lines.h"
 #include "core/system/process.h"
 #include "experiments/program.h"
+#include "model/lobes/gauge.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
 #include "trilobe/core/base/error.h"
@@ -25,7 +26,7 @@
 #include "trilobe/solvers/solver.h"
 #include "trilobe/solvers/start/initial_model.h"
 
-DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened and lm_dogleg");
+DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened, lm_dogleg and searched");
 DEFINE_string(weightings, "appearance", "a list of weightings of the objective");
 DEFINE_string(init, "roughness", "the starts, as `trilobe fit` has them");
 DEFINE_int32(starts, 1, "how many, of seeds 1, 2, ...");
@@ -59,10 +60,12 @@ struct Way {
   std::string solver;
   bool softened = false;  // first by stiff tables that soften
   TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
+  int starts = SolverOptions().starts;
 };
 
 Way WayOf(std::string_view name) {
   if (name == "softened") return {.solver = "varpro", .softened = true};
+  if (name == "searched") return {.solver = "multistart", .starts = 40};
   if (name == "lm_dogleg") return {.solver = "lm", .trust_region = TrustRegion::kDogleg};
   return {.solver = std::string(name)};
 }
@@ -77,6 +80,7 @@ Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objec
   SolverOptions options;
   options.diagnose = false;
   options.trust_region = way.trust_region;
+  options.starts = way.starts;
   const double since = ProcessorSeconds();
   FactorModel model = init.make(objective, seed);
   if (way.softened) {
@@ -86,6 +90,16 @@ Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objec
   }
   SolverSummary summary = MakeSolver(way.solver)->Solve(objective, options, &model);
   return {.model = model, .summary = summary, .seconds = ProcessorSeconds() - since};
+}
+
+// The largest G, in the scale of stored models.
+double LargestG(FactorModel model, const Objective& objective) {
+  SetCanonicalScale(objective.coverage(), &model);
+  double largest = 0;
+  for (int lobe = 0; lobe < model.spec().lobes; ++lobe) {
+    largest = std::max(largest, std::ranges::max(model.table(Factor::kG, lobe)));
+  }
+  return largest;
 }
 
 // A line of JSON a fit: E of what was fitted, over a black model's, too, the latter by default
@@ -111,11 +125,13 @@ int Main(const std::string& source) {
             "{\"weighting\": \"%s\", \"seed\": %d, \"solver\": \"%s\", \"E\": %.17g, "
             "\"relative_E\": %.17g, \"clean_relative_E\": %.17g, \"psnr_db\": %.6g, "
             "\"delta_e\": %.6g, \"iterations\": %d, \"raises\": %zu, \"stop_reason\": \"%s\", "
-            "\"seconds\": %.4g}\n",
+            "\"largest_g\": %.4g, \"tried\": %zu, \"came_there\": %td, \"seconds\": %.4g}\n",
             weighting.name.c_str(), seed, std::string(solver).c_str(), E, E / few.MeasuredEnergy(),
             clean.Value(run.model) / clean.MeasuredEnergy(), sphere.psnr_db, sphere.mean_delta_e,
             run.summary.iterations, run.summary.FindRaises().iterations.size(),
-            StopReasonName(run.summary.stop_reason), run.seconds);
+            StopReasonName(run.summary.stop_reason), LargestG(run.model, few),
+            run.summary.starts.size(),
+            std::ranges::count(run.summary.starts, 1, &StartResult::minimum), run.seconds);
         std::fflush(stdout);
       }
     }

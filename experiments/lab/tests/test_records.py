@@ -109,6 +109,15 @@ class RecordsTest(BookTest):
         records.update(self.program, self.folder / "units", self.book, new=False)
         self.assertEqual(self.rows()[3]["objective"], 3)
 
+    def test_tables_follow_the_book(self):
+        self.fit("a", 4.0)
+        self.update()
+        rows = [{"material": "nylon", **records.columns(REPORT, "nylon"), "record": None},
+                {"material": "brass", **records.columns(REPORT, "brass"), "record": 7.0}, {"material": "nylon"}]
+        self.assertTrue(records.refresh(rows, self.book))
+        self.assertEqual([row.get("record") for row in rows], [4, 7, None])
+        self.assertFalse(records.refresh(rows, self.book))
+
     def test_runs_of_a_study_set_records_with_the_command_that_makes_them(self):
         folder = self.folder / "study" / "nylon" / "awls-1"
         folder.mkdir(parents=True)
