@@ -308,6 +308,7 @@ def update_records(options):
     failures = []
     if options.search:
         failures = records.search(program, Store(options.out / "units"), materials.find(places), again=options.again)
+        print("\n".join(failures), file=sys.stderr)
     for folder in [options.out / "units", *map(pathlib.Path, fitted)]:
         print("\n".join(records.update(program, folder)))
     return SOME_FAILED if failures else 0

@@ -225,8 +225,6 @@ def _note(report):
 def note(folder, key, book=BOOK):
     """Says in the book what a search has seen."""
     report = json.loads((folder / "report.json").read_text())
-    if key_of(report, key[0]) != key:
-        raise UsageError(f"{report['source']} is not the measurement of {key[0]} in {book}")
     records = read(book)
     row = records[key]
     there = report["objective"] <= (1 + SAME) * row["objective"]
@@ -248,10 +246,20 @@ def search(program, store, sources, book=BOOK, again=False):
             and (again or row.get("starts") is None)]
     failures = []
     for row in sorted(rows, key=importance):
+        if row["material"] not in source_of:
+            continue
         unit = search_of(row, source_of[row["material"]], program)
         failed = campaign.run(store, [unit], again)
         failures += failed
-        if not failed:
-            print(*update(program, store.folder(unit), book)[1:], sep="\n", flush=True)
-            note(store.folder(unit), unit.labels["key"], book)
+        if failed:
+            continue
+        folder, key = store.folder(unit), unit.labels["key"]
+        found = key_of(json.loads((folder / "report.json").read_text()), row["material"])
+        if found != key:
+            failures.append(f"{row['material']}: this file has the checksum {found[1]}, that in {book} {key[1]}")
+            del source_of[row["material"]]  # nor are its other records of this file
+            continue
+        for line in update(program, folder, book)[1:]:
+            print(line, flush=True)
+        note(folder, key, book)
     return failures

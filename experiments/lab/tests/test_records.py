@@ -148,9 +148,10 @@ class SearchTest(BookTest):
         (self.folder / "found").mkdir()
         self.searched = self.folder / "searched"
 
-    def search(self, objective, minima=(1, 1, 2), **options):
+    def search(self, objective, minima=(1, 1, 2), checksum="abc", **options):
         starts = [{"name": f"roughness/{k}", "objective": 1.0 * of, "minimum": of} for k, of in enumerate(minima)]
-        report = {**REPORT, "objective": objective, "starts": starts, "solver": "multistart", "source": "nylon.binary"}
+        report = {**REPORT, "objective": objective, "starts": starts, "solver": "multistart", "source": "nylon.binary",
+                  "source_xxh128": checksum}
         for name, content in (("report", report), ("model", MODEL), ("score", {"objective": objective})):
             (self.folder / "found" / f"{name}.json").write_text(json.dumps(content))
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
@@ -188,3 +189,8 @@ class SearchTest(BookTest):
         self.update()
         self.assertEqual((self.rows()[3]["objective"], self.rows()[3]["starts"], self.rows()[3]["came_there"]),
                          (2, 3, 0))
+
+    def test_another_file_of_the_name_is_told_and_leaves_the_book_alone(self):
+        before = self.book.read_text()
+        self.assertRegex(self.search(3.0, checksum="def")[0], "nylon: this file has the checksum def, that in .* abc")
+        self.assertEqual(self.book.read_text(), before)
