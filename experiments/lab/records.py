@@ -76,14 +76,16 @@ def columns(report, material):
 
 
 def refresh(rows, book=BOOK):
-    """Sets `record` of the rows of `columns` to what the book says now. Returns whether one has changed."""
+    """Sets `record` of the rows of `columns` to what the book says now, and `over_record`, by how much their objective is
+    above. Returns whether one has changed."""
     of = {(key[0], " ".join(map(str, key[1:]))): row["objective"] for key, row in read(book).items()}
     changed = False
     for row in rows:
         if row.get("record_of"):
             now = of.get((row["material"], row["record_of"]), row.get("record"))
-            changed |= now != row.get("record")
-            row["record"] = now
+            above = row["objective"] / now - 1 if now else None
+            changed |= now != row.get("record") or "over_record" not in row
+            row |= {"record": now, "over_record": above}
     return changed
 
 

@@ -199,9 +199,10 @@ def _figure(starts, rows):
 
 
 def draw(drawn, _):
-    starts, rows = drawn["starts"], drawn["solvers"]
+    starts, rows = drawn.get("starts"), drawn["solvers"]  # of all starts: bulk, which published tables lack
     products = {"searched.md": _searched(drawn["searched"])} if drawn.get("searched") else {}
-    if not rows:
-        return products
-    return {**products, "summary.md": _summary(rows), "paired.md": _paired(rows), "shares.md": _shares(starts),
-            "seen.md": _seen(drawn["seen"]), "ends": _figure(starts, rows)}
+    if rows:
+        products |= {"summary.md": _summary(rows), "paired.md": _paired(rows), "seen.md": _seen(drawn["seen"])}
+    if starts:
+        products |= {"shares.md": _shares(starts), "ends": _figure(starts, rows)}
+    return products

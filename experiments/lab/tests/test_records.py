@@ -112,10 +112,12 @@ class RecordsTest(BookTest):
     def test_tables_follow_the_book(self):
         self.fit("a", 4.0)
         self.update()
-        rows = [{"material": "nylon", **records.columns(REPORT, "nylon"), "record": None},
-                {"material": "brass", **records.columns(REPORT, "brass"), "record": 7.0}, {"material": "nylon"}]
+        rows = [{"material": "nylon", "objective": 6.0, **records.columns(REPORT, "nylon"), "record": None},
+                {"material": "brass", "objective": 7.0, **records.columns(REPORT, "brass"), "record": 7.0},
+                {"material": "nylon"}]
         self.assertTrue(records.refresh(rows, self.book))
         self.assertEqual([row.get("record") for row in rows], [4, 7, None])
+        self.assertEqual([row.get("over_record") for row in rows], [0.5, 0, None])
         self.assertFalse(records.refresh(rows, self.book))
 
     def test_runs_of_a_study_set_records_with_the_command_that_makes_them(self):
