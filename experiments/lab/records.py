@@ -20,11 +20,12 @@ BOOK = FOLDER / "records.csv"
 # What a record is of. The checksum is that of the measured values (`source_xxh128` of a report).
 KEY = ("material", "source_xxh128", "valid_samples", "weighting", "model", "lobes", "parameters")
 # What a search has seen: how many starts it tried, how many came as low as the record, in how many minima they ended,
-# and how probable a new minimum is of a further random start.
-SEARCH = ("starts", "came_there", "minima", "new_minimum")
-# What tells a model that is none of a material: the largest G, in the scale of stored models, and the least share of
-# the light that a lobe reflects.
-SIGNS = ("largest_G", "least_light", "degenerate")
+# how many were random, how probable a new minimum is of a further one, and how many ended more than 1 % below all that
+# were not random, those of `auto` among these.
+SEARCH = ("starts", "came_there", "minima", "random", "new_minimum", "random_lower")
+LOWER = 0.01
+# A model is none of a material if its largest G, in the scale of stored models, or the least share of the light that a
+# lobe reflects is beyond these.
 LARGE_G, NO_LIGHT = 1e4, 1e-4
 # Flags that give a fit other data, or lower another E, than the measurement and the weighting say.
 OTHER_DATA = ("corrupt", "missing", "dark_noise", "outliers", "extrapolated", "tilt", "cosine", "scale",
@@ -114,7 +115,7 @@ def _flags_of(report):
 
 
 def signs(folder, report):
-    """SIGNS of the model that a fit has left."""
+    """What the model looks like that a fit has left, and whether it is degenerate."""
     G = json.loads((folder / "model.json").read_text())["G"]
     while G and isinstance(G[0], list):
         G = list(itertools.chain.from_iterable(G))
@@ -122,7 +123,8 @@ def signs(folder, report):
     least = min((lobe["share"] for lobe in report["light"]["lobes"]), default=0.0) if report.get("light") else None
     degenerate = largest > LARGE_G or (least is not None and least < NO_LIGHT)
     return {"largest_G": float(f"{largest:.4g}"), "least_light": least and float(f"{least:.4g}"),
-            "degenerate": int(degenerate)}
+            "degenerate": int(degenerate),
+            **{name: (report.get("appearance") or {}).get(name) for name in ("psnr_db", "mean_delta_e")}}
 
 
 def candidates(root):
@@ -217,11 +219,13 @@ def search_of(row, source, program):
 
 def _note(report):
     """SEARCH of a search, but how many came to the record."""
-    ended = [start["minimum"] for start in report["starts"]]
-    random = [start["minimum"] for start in report["starts"] if "/" in start["name"]]
-    n, w = len(random), len(set(random))
-    return {"starts": len(ended), "minima": max(ended, default=0),
-            "new_minimum": float(f"{min(1.0, w * (w + 1) / (n * (n - 1))):.3g}") if n > 1 else 1.0}
+    starts = report["starts"]
+    random = [start for start in starts if "/" in start["name"]]
+    least = min((start["objective"] for start in starts if start not in random), default=math.inf)
+    n, w = len(random), len({start["minimum"] for start in random})
+    return {"starts": len(starts), "minima": max((start["minimum"] for start in starts), default=0), "random": n,
+            "new_minimum": float(f"{min(1.0, w * (w + 1) / (n * (n - 1))):.3g}") if n > 1 else 1.0,
+            "random_lower": sum((1 + LOWER) * start["objective"] < least for start in random)}
 
 
 def note(folder, key, book=BOOK):

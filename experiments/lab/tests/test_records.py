@@ -152,6 +152,7 @@ class SearchTest(BookTest):
 
     def search(self, objective, minima=(1, 1, 2), checksum="abc", **options):
         starts = [{"name": f"roughness/{k}", "objective": 1.0 * of, "minimum": of} for k, of in enumerate(minima)]
+        starts.append({"name": "wide", "objective": 1.005, "minimum": 3})
         report = {**REPORT, "objective": objective, "starts": starts, "solver": "multistart", "source": "nylon.binary",
                   "source_xxh128": checksum}
         for name, content in (("report", report), ("model", MODEL), ("score", {"objective": objective})):
@@ -164,10 +165,17 @@ class SearchTest(BookTest):
         self.assertEqual(self.search(3.0), [])
         row = self.rows()[3]
         self.assertEqual((row["objective"], row["solver"], row["starts"], row["came_there"], row["minima"]),
-                         (3, "multistart", 3, 2, 2))
+                         (3, "multistart", 4, 2, 3))
+        self.assertEqual((row["random"], row["random_lower"]), (3, 0))
         self.assertEqual(row["new_minimum"], 1)  # 2 * 3 / (3 * 2)
         self.assertIn("--max_angle=75", row["command"])
         self.assertIn("--starts=40", self.searched.read_text())
+
+    def test_random_starts_that_end_below_all_others_are_counted(self):
+        self.search(3.0, minima=(1, 2, 2))
+        self.assertEqual(self.rows()[3]["random_lower"], 0)  # by half a percent
+        self.search(2.0, minima=(0, 0, 1), again=True)
+        self.assertEqual(self.rows()[3]["random_lower"], 2)
 
     def test_a_higher_one_leaves_the_record_to_which_none_came(self):
         self.search(4.1)
@@ -190,7 +198,7 @@ class SearchTest(BookTest):
         self.fit("b", 2.0, scored=2.0)
         self.update()
         self.assertEqual((self.rows()[3]["objective"], self.rows()[3]["starts"], self.rows()[3]["came_there"]),
-                         (2, 3, 0))
+                         (2, 4, 0))
 
     def test_another_file_of_the_name_is_told_and_leaves_the_book_alone(self):
         before = self.book.read_text()
