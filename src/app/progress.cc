@@ -14,7 +14,7 @@
 namespace trilobe {
 namespace {
 
-// What becomes of a start that is at its end.
+// Says where a start has ended.
 std::string Describe(const StartResult& start, double lowest) {
   const double above = 100 * (start.objective / lowest - 1);
   if (!(above > 0)) return "the lowest so far";

@@ -63,7 +63,7 @@ TEST(Minima, AreDescribedInOneSentence) {
       "would be expected to end in a new minimum with a probability of 40 %");
 }
 
-// Of data that are far brighter than any of these models, all have nearly the same E.
+// All these models have nearly the same E, as the data are far brighter than any.
 TEST(FindMinima, TellsApartByLobesWhatHasTheSameE) {
   constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
