@@ -236,7 +236,12 @@ def run(experiment, options):
             draw(experiment, part)
         _fill(folder, fill)
         if options.form != "quick":  # what it has found below the book's
-            print(*records.update(setting.main_program, store.root, new=False)[1:], sep="\n")
+            try:
+                lines = records.update(setting.main_program, store.root, new=False)[1:]
+            except UsageError as error:
+                lines = [f"the book of records stays as it was: {error}"]
+            for line in lines:
+                print(line)
     print(f"wrote {folder}")
     if options.publish:
         publish(experiment, folder, options.form)
