@@ -18,7 +18,10 @@ namespace {
 std::string Describe(const StartResult& start, double lowest) {
   const double above = 100 * (start.objective / lowest - 1);
   if (!(above > 0)) return "the lowest so far";
-  const char* const minimum = start.minimum == 1 ? "lobes alike" : "another minimum";
+  constexpr double kSameE = 0.1;  // %, by which starts of one minimum differ at most
+  const char* const minimum = start.minimum == 1 ? "lobes alike"
+                              : above <= kSameE  ? "other lobes"
+                                                 : "another minimum";
   constexpr double kLeast = 1e-3;  // that is worth its digits
   if (above < kLeast) return std::string("at the lowest, ") + minimum;
   std::array<char, 64> text{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -128,6 +129,8 @@ class Starts {
         [this, seed](PhaseSeconds* phases) {
           FactorModel model =
               WithUnobservedBins(FindInitialModel("roughness").make(objective_, seed));
+          // A solver refuses to begin there; a start ends there.
+          if (!std::isfinite(elimination_->thinned().Value(model))) return model;
           return AfterDoglegSteps(elimination_->thinned(), std::move(model), kSteps, stop_, phases);
         },
         {.count = 0});
