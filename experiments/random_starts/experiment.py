@@ -98,7 +98,8 @@ def _searched(searched):
         if row.get("lowest_other") is None or row.get("auto") is None:
             continue
         lowest = min(row["E"], row["lowest_other"])
-        lines.append([row["material"], f"{row['E']:.6g}", f"{100 * stats.excess(row['E'], row['lowest_other']):+.2f}",
+        above = round(100 * (row["E"] / row["lowest_other"] - 1), 2) + 0.0  # and not -0.00
+        lines.append([row["material"], f"{row['E']:.6g}", f"{above:+.2f}",
                       f"{row['came_there']} of {row['tried']}", f"{row['largest_g']:.2g}",
                       f"{100 * stats.excess(row['auto'], lowest):.2f}"])
     return tables.markdown(["material", "E of the search", "over the lowest of all other fits, %",
