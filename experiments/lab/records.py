@@ -77,8 +77,8 @@ def columns(report, material):
 
 
 def refresh(rows, book=BOOK):
-    """Sets `record` of the rows of `columns` to what the book says now, and `over_record`, by how much their objective is
-    above. Returns whether one has changed."""
+    """Sets `record` of the rows of `columns` to what the book says now, and `over_record`, how far their objective is
+    above it. Returns whether one has changed."""
     of = {(key[0], " ".join(map(str, key[1:]))): row["objective"] for key, row in read(book).items()}
     changed = False
     for row in rows:
