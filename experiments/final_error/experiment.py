@@ -6,7 +6,7 @@ import pathlib
 
 from PIL import Image
 
-from lab import fits, merl, stats, tables
+from lab import fits, merl, records, stats, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
@@ -85,6 +85,7 @@ def _row(result, clock):
     return {**row, **{key: report[key] for key in
                       ("valid_samples", "initial_objective", "objective", "relative_objective",
                        "psnr_peak", *MEASURES, "iterations", "stop_reason")},
+            **records.columns(report, labels["material"]),
             "optimality": report["diagnosis"] and report["diagnosis"]["optimality"],
             "solve_s": fit.solved - fit.before, "all_s": fit.all}
 
@@ -177,8 +178,9 @@ def _overview(rows):
         of = [row for row in planned if math.isfinite(row["objective"])]
         ratios = []
         for row in of:
-            least = min(other["objective"] for other in by_material[row["material"]]
-                        if other["weighting"] == row["weighting"])
+            alike = [other for other in by_material[row["material"]] if other["weighting"] == row["weighting"]]
+            least = min(other[column] for other in alike for column in ("objective", "record")
+                        if other.get(column) is not None)
             ratios.append(stats.ratio(row["objective"], least))
         if of:
             lines.append([column, tables.count(len(planned), len(planned) - len(of)),
@@ -310,9 +312,11 @@ def draw(drawn, folder):
                   if row["material"] in others and row["run"] in ("defaults", "weighting")]
     defaults = [row for row in rows if row["run"] == "defaults"]
     fitted = [row for row in defaults if math.isfinite(row["objective"])]
+    known = [{**row, "run": "", "solver": "lowest known", "objective": row["record"]}
+             for row in defaults if row.get("record") is not None]
     products = {
         "overview.md": _overview(solvers),
-        "objective.md": _table(solvers, "objective", "{:.5g}".format),
+        "objective.md": _table(solvers + known, "objective", "{:.5g}".format),
         "psnr.md": _table(solvers, "psnr_db", "{:.2f}".format, larger_is_better=True),
         "relative_error.md": _table(solvers, "mean_relative_error", "{:.2%}".format),
         "defaults.md": _defaults_table(defaults),

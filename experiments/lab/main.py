@@ -16,7 +16,8 @@ EPILOGUE = """
 NAME     run an experiment: what is in the folder --out already is kept
 list     the experiments and their questions
 all      all of them, one after the other, and their anisotropic forms, as far as they take what is given
-records  lower the book of records (experiments/records) by the fits in OUT
+records  lower the book of records (experiments/records) by the fits in OUT and in folders of fits, as trilobe study
+         leaves them; with --search and BRDF files, look for lower ones
 report   all pages with their tables and pictures in one file, OUT/report.html
 """
 
@@ -62,6 +63,8 @@ def parse(arguments):
                         help="only print how many units are to make")
     parser.add_argument("--no-run", action="store_true",
                         help="make nothing; tables and pictures of what is there")
+    parser.add_argument("--search", action="store_true", help="records: by multistart, each record of the BRDF files "
+                        "that has not been searched; with --again all")
     parser.add_argument("--draw", action="store_true", help="only draw, from the tables in OUT")
     parser.add_argument("--publish", action="store_true",
                         help="copy pictures, and tables of at most "
@@ -111,6 +114,9 @@ def draw(experiment, folder):
     of_name = collections.defaultdict(list, {path.stem: tables.read(path) for path in sorted(folder.glob("*.csv"))})
     if not of_name:
         raise UsageError(f"{folder} holds no tables; run the experiment first")
+    for name, rows in of_name.items():
+        if records.refresh(rows):
+            tables.write(folder / f"{name}.csv", rows)
     for name, content in experiment.module.draw(of_name, folder).items():
         if isinstance(content, str):
             (folder / name).write_text(content)
@@ -231,6 +237,13 @@ def run(experiment, options):
             tabulate(experiment, setting, store, units, part)
             draw(experiment, part)
         _fill(folder, fill)
+        if options.form != "quick":  # what it has found below the book's
+            try:
+                lines = records.update(setting.main_program, store.root, new=False)[1:]
+            except UsageError as error:
+                lines = [f"the book of records stays as it was: {error}"]
+            for line in lines:
+                print(line)
     print(f"wrote {folder}")
     if options.publish:
         publish(experiment, folder, options.form)
@@ -290,9 +303,22 @@ def run_all(options):
 
 
 def update_records(options):
-    """Lowers the book of records by what is in --out."""
+    """Lowers the book of records by what is in --out, in the folders of fits given, and by a search of the BRDF files
+    given. Returns the exit status."""
     program = (options.program or options.build / "bin" / "trilobe").resolve()
-    print("\n".join(records.update(program, options.out / "units")))
+    fitted = [place for place in options.sources if next(pathlib.Path(place).rglob("report.json"), None)]
+    places = [place for place in options.sources if place not in fitted]
+    if places and not options.search:
+        raise UsageError(f"{places[0]} holds no fits; --search searches the records of BRDF files")
+    if options.search and not places:
+        raise UsageError("--search: give BRDF files or folders of them")
+    failures = []
+    if options.search:
+        failures = records.search(program, Store(options.out / "units"), materials.find(places), again=options.again)
+        print("\n".join(failures), file=sys.stderr)
+    for folder in [options.out / "units", *map(pathlib.Path, fitted)]:
+        print("\n".join(records.update(program, folder)))
+    return SOME_FAILED if failures else 0
 
 
 def stop(signal_number, _):
@@ -312,7 +338,7 @@ def main(arguments=None):
         elif options.name == "all":
             return run_all(options)
         elif options.name == "records":
-            update_records(options)
+            return update_records(options)
         else:
             return run(experiments.load(options.name), options)
         return 0

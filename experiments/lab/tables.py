@@ -14,7 +14,7 @@ def _text(value):
 
 # Columns of names, which stay text though one may look like a number.
 NAMES = {"material", "solver", "start", "weighting", "fitted_by", "scored_by", "run", "case", "fit",
-         "unit"}
+         "unit", "source_xxh128"}
 
 
 def _value(key, text):

@@ -8,7 +8,8 @@ import numpy
 from lab import fits, stats, tables
 from lab.units import Unit
 
-FOUND, NEARLY = 0.01, 0.05  # E above the lowest of any start and solver
+FOUND, NEARLY = 0.01, 0.05  # E above the lowest of any start and solver, and of a search
+SEARCHED = "searched"  # `multistart` with forty starts, which looks for the lowest E and is compared with none
 CLOSE = 0.001
 ALIKE = 0.001  # medians of E nearer than this are alike
 # How far E is above the lowest of its material.
@@ -37,9 +38,20 @@ def tabulate(setting, results):
         if result.folder:
             lines = (result.folder / "stdout.txt").read_text().splitlines()
             starts += [{**result.labels, **json.loads(line)} for line in lines]
-    rows, seen, correlations = [], [], []
-    for material, of in tables.groups(starts, "material").items():
-        lowest = min(of, key=lambda row: row["E"])
+    rows, seen, correlations, searched = [], [], [], []
+    for material, all_of in tables.groups(starts, "material").items():
+        of = [row for row in all_of if row["solver"] != SEARCHED]
+        autos = [row for row in of if row["solver"] == "auto"]
+        for row in all_of:
+            if row["solver"] == SEARCHED:
+                searched.append({
+                    **{name: row[name] for name in ("material", "E", "tried", "came_there", "largest_g", "psnr_db",
+                                                    "delta_e", "seconds")},
+                    "lowest_other": min((other["E"] for other in of), default=None),
+                    "auto": max((other["E"] for other in autos), default=None)})
+        if not of:
+            continue
+        lowest = min(all_of, key=lambda row: row["E"])
         for row in of:
             row["excess"] = stats.excess(row["E"], lowest["E"])
         rows += [_row(material, solver, single) for solver, single in tables.groups(of, "solver").items()]
@@ -55,7 +67,8 @@ def tabulate(setting, results):
                              "psnr_db_more": stats.median(gains), "least_psnr_db_more": min(gains),
                              "most_psnr_db_more": max(gains),
                              "delta_e_more": stats.median([row["delta_e"] - lowest["delta_e"] for row in near])})
-    return {"starts": starts, "solvers": rows, "seen": seen, "correlations": correlations}
+    return {"starts": [row for row in starts if row["solver"] != SEARCHED], "solvers": rows, "seen": seen,
+            "correlations": correlations, "searched": searched}
 
 
 def _row(material, solver, of):
@@ -75,6 +88,22 @@ def _percent_with_interval(rows, key):
     values = [100 * row[key] for row in rows]
     low, high = stats.bootstrap(values, statistics.fmean)
     return f"{statistics.fmean(values):.0f} [{low:.0f}, {high:.0f}]"
+
+
+def _searched(searched):
+    """A line a material: what a search finds beside the lowest E of all other fits, and by how much `auto` ends above
+    the lower of both, from the worse of its starts."""
+    lines = []
+    for row in searched:
+        if row.get("lowest_other") is None or row.get("auto") is None:
+            continue
+        lowest = min(row["E"], row["lowest_other"])
+        above = round(100 * (row["E"] / row["lowest_other"] - 1), 2) + 0.0  # and not -0.00
+        lines.append([row["material"], f"{row['E']:.6g}", f"{above:+.2f}",
+                      f"{row['came_there']} of {row['tried']}", f"{row['largest_g']:.2g}",
+                      f"{100 * stats.excess(row['auto'], lowest):.2f}"])
+    return tables.markdown(["material", "E of the search", "over the lowest of all other fits, %",
+                            "starts that came there", "largest G", "auto over the lower of both, %"], lines)
 
 
 def _summary(rows):
@@ -171,10 +200,10 @@ def _figure(starts, rows):
 
 
 def draw(drawn, _):
-    starts, rows = drawn["starts"], drawn["solvers"]
-    if not rows:
-        return {}
-    products = {"summary.md": _summary(rows), "paired.md": _paired(rows), "seen.md": _seen(drawn["seen"])}
+    starts, rows = drawn.get("starts"), drawn["solvers"]  # of all starts: bulk, which published tables lack
+    products = {"searched.md": _searched(drawn["searched"])} if drawn.get("searched") else {}
+    if rows:
+        products |= {"summary.md": _summary(rows), "paired.md": _paired(rows), "seen.md": _seen(drawn["seen"])}
     if starts:
         products |= {"shares.md": _shares(starts), "ends": _figure(starts, rows)}
     return products

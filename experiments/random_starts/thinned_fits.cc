@@ -29,7 +29,7 @@
 #include "trilobe/solvers/start/initial_model.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
-DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened and lm_dogleg");
+DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened, lm_dogleg and searched");
 DEFINE_string(weightings, "appearance", "a list of weightings of the objective");
 DEFINE_string(init, "roughness", "the starts, as `trilobe fit` has them");
 DEFINE_int32(starts, 1, "how many, of seeds that follow each other");
@@ -67,10 +67,12 @@ struct Way {
   std::string solver;
   bool softened = false;  // first by stiff tables that soften
   TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
+  int starts = SolverOptions().starts;
 };
 
 Way WayOf(std::string_view name) {
   if (name == "softened") return {.solver = "varpro", .softened = true};
+  if (name == "searched") return {.solver = "multistart", .starts = 40};
   if (name == "lm_dogleg") return {.solver = "lm", .trust_region = TrustRegion::kDogleg};
   return {.solver = std::string(name)};
 }
@@ -87,6 +89,7 @@ Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objec
   if (FLAGS_max_iterations > 0) options.max_iterations = FLAGS_max_iterations;
   if (FLAGS_tolerance >= 0) options.relative_decrease_tolerance = FLAGS_tolerance;
   options.trust_region = way.trust_region;
+  options.starts = way.starts;
   const double since = ProcessorSeconds();
   FactorModel model = init.make(objective, seed);
   if (way.softened) {
@@ -108,6 +111,16 @@ void KeepModel(const Objective& objective, FactorModel model, const std::string&
   Canonicalize(objective.coverage(), &model);
   WriteModel({.model = model, .unobserved = UnobservedParameters(objective.coverage()), .fit = {}},
              FLAGS_models + "/" + name + ".json");
+}
+
+// The largest G, in the scale of stored models.
+double LargestG(FactorModel model, const Objective& objective) {
+  SetCanonicalScale(objective.coverage(), &model);
+  double largest = 0;
+  for (int lobe = 0; lobe < model.spec().lobes; ++lobe) {
+    largest = std::max(largest, std::ranges::max(model.table(Factor::kG, lobe)));
+  }
+  return largest;
 }
 
 // A line of JSON a fit: E of what was fitted, over a black model's, too, the latter by default
@@ -133,11 +146,14 @@ int Main(const std::string& source) {
             "{\"weighting\": \"%s\", \"seed\": %d, \"solver\": \"%s\", \"E\": %.17g, "
             "\"relative_E\": %.17g, \"clean_relative_E\": %.17g, \"psnr_db\": %.6g, "
             "\"delta_e\": %.6g, \"iterations\": %d, \"raises\": %zu, \"stop_reason\": \"%s\", "
-            "\"optimality\": %.4g, \"seconds\": %.4g}\n",
+            "\"optimality\": %.4g, \"largest_g\": %.4g, \"tried\": %zu, \"came_there\": %td, "
+            "\"seconds\": %.4g}\n",
             weighting.name.c_str(), seed, std::string(solver).c_str(), E, E / few.MeasuredEnergy(),
             clean.Value(run.model) / clean.MeasuredEnergy(), sphere.psnr_db, sphere.mean_delta_e,
             run.summary.iterations, run.summary.FindRaises().iterations.size(),
-            StopReasonName(run.summary.stop_reason), OptimalityOf(few, run.model), run.seconds);
+            StopReasonName(run.summary.stop_reason), OptimalityOf(few, run.model),
+            LargestG(run.model, few), run.summary.starts.size(),
+            std::ranges::count(run.summary.starts, 1, &StartResult::minimum), run.seconds);
         std::fflush(stdout);
         if (!FLAGS_models.empty()) {
           KeepModel(few, run.model, std::string(solver) + "-" + std::to_string(seed));

@@ -67,7 +67,7 @@ int RunFitOfOne(const std::string& source) {
   std::optional<InterruptGuard> guard;  // while it reads, Ctrl-C ends it at once
   std::optional<Progress> progress;
   const auto show = [&](const auto& what) {
-    if (!progress) progress.emplace(settings.fit.solver_options(ModelSpec()));
+    if (!progress) progress.emplace(settings.fit.solver_options(ModelSpec()), FLAGS_verbose);
     progress->Show(what);
   };
   FitRun run = *RunOneFit(

@@ -3,17 +3,39 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {
-Progress::Progress(const SolverOptions& options)
+namespace {
+
+// Says where a start has ended.
+std::string Describe(const StartResult& start, double lowest) {
+  const double above = 100 * (start.objective / lowest - 1);
+  if (!(above > 0)) return "the lowest so far";
+  constexpr double kSameE = 0.1;  // %, by which starts of one minimum differ at most
+  const char* const minimum = start.minimum == 1 ? "lobes alike"
+                              : above <= kSameE  ? "other lobes"
+                                                 : "another minimum";
+  constexpr double kLeast = 1e-3;  // that is worth its digits
+  if (above < kLeast) return std::string("at the lowest, ") + minimum;
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.2g %% above the lowest, %s", above, minimum);
+  return text.data();
+}
+
+}  // namespace
+
+Progress::Progress(const SolverOptions& options, bool verbose)
     : max_iterations_(options.max_iterations),
       max_seconds_(options.max_seconds),
-      on_terminal_(isatty(STDERR_FILENO) != 0) {}
+      on_terminal_(isatty(STDERR_FILENO) != 0),
+      verbose_(verbose) {}
 
 Progress::~Progress() {
   if (on_terminal_) std::fputs("\r\033[K", stderr);
@@ -37,7 +59,12 @@ void Progress::Show(const IterationRecord& record) {
 }
 
 void Progress::Show(const StartProgress& starts) const {
-  if (!on_terminal_) return;
+  if (starts.start && (on_terminal_ || verbose_)) {
+    const StartResult& start = *starts.start;
+    std::fprintf(stderr, "%sstart %-14s E %-12.6g %s\n", on_terminal_ ? "\r\033[K" : "",
+                 start.name.c_str(), start.objective, Describe(start, starts.lowest).c_str());
+  }
+  if (!on_terminal_ || starts.start) return;
   const double seconds = since_.Seconds();
   const double left =
       std::min(seconds * (1 / std::max(starts.share, 1e-9) - 1), max_seconds_ - seconds);

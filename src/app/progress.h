@@ -12,10 +12,11 @@ namespace trilobe {
 
 // Progress of a fit on one line of a terminal: iteration, E, its relative change, or while starts
 // are tried how many have been, and an upper bound on the time left. Draws nothing if standard
-// error is not a terminal.
+// error is not a terminal. A start that is at its end has a line of its own, which stays, also in a
+// file if `verbose`.
 class Progress {
  public:
-  explicit Progress(const SolverOptions& options);
+  Progress(const SolverOptions& options, bool verbose);
   ~Progress();  // clears the line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -27,7 +28,7 @@ class Progress {
  private:
   const int max_iterations_;
   const double max_seconds_;
-  const bool on_terminal_;
+  const bool on_terminal_, verbose_;
   const Stopwatch since_;
   IterationRecord last_;
 };

@@ -530,8 +530,29 @@ TEST(Fit, TellsOnATerminalHowFarItsStartsAre) {
        "--max_iterations=4", "--nodiagnose", "--out=" + (folder / "out")},
       "", 0);
   EXPECT_EQ(result.status, 0);
-  EXPECT_THAT(result.text, HasSubstr("start 1 of 12, round 1 of 3"));
+  EXPECT_THAT(result.text, HasSubstr("start 1 of 8, round 1 of 3"));
   EXPECT_THAT(result.text, HasSubstr("s left for starts"));
+  EXPECT_THAT(result.text, HasSubstr("the lowest so far"));
+}
+
+TEST(Fit, SaysWhereEachStartHasEnded) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words = {
+      "fit",          "synth:felt@12x12x24", "--solver=multistart",
+      "--starts=12",  "--lobes=1",           "--max_iterations=9",
+      "--nodiagnose", "--noplots",           "--out=" + (folder / "out")};
+  EXPECT_THAT(RunProgram(words).err, Not(HasSubstr("lowest")));
+  std::vector<std::string> verbose = words;
+  verbose.push_back("--verbose");
+  const ProgramResult result = RunProgram(verbose);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json starts = Json(folder / "out/report.json")["starts"];
+  EXPECT_EQ(starts[0]["minimum"], 1);
+  for (const nlohmann::json& start : starts) {
+    EXPECT_THAT(result.err, HasSubstr("start " + start["name"].get<std::string>() + " "));
+  }
+  EXPECT_THAT(result.err, HasSubstr("the lowest so far"));
+  EXPECT_THAT(result.out, HasSubstr("ended in the lowest of"));
 }
 
 TEST(Fit, HonoursItsTimeLimit) {

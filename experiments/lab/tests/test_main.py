@@ -79,6 +79,24 @@ class MainTest(FolderTest):
         self.assertIn("of/bad: exit status 1: broken", said)
         self.assertEqual([row["there"] for row in self.table()], [1, 0])
 
+    def records(self, *words):
+        """(exit status, what was said) of the command `records`."""
+        with (contextlib.redirect_stdout(io.StringIO()) as out,
+              contextlib.redirect_stderr(io.StringIO()) as said):
+            status = main.main(["records", f"--out={self.folder / 'out'}", f"--program={self.program}", *words])
+            return status, out.getvalue() + said.getvalue()
+
+    def test_records_takes_folders_of_fits_and_searches_only_when_asked_to(self):
+        (self.folder / "empty").mkdir()
+        (self.folder / "fits" / "a").mkdir(parents=True)
+        (self.folder / "fits" / "a" / "report.json").write_text("{}")  # of another version
+        for words, error in ((["--search"], "give BRDF files"), ([str(self.folder / "empty")], "empty holds no fits")):
+            status, said = self.records(*words)
+            self.assertEqual(status, 2)
+            self.assertIn(error, said)
+        status, said = self.records(str(self.folder / "fits"))
+        self.assertEqual(status, 0, said)
+
     def test_what_fails_in_drawing_leaves_earlier_tables(self):
         self.assertEqual(self.run_it()[0], 0)
         before = self.table()

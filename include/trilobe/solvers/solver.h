@@ -63,12 +63,6 @@ struct Diagnosis {
   int unresolved = 0;
 };
 
-// Result of one starting point.
-struct StartResult {
-  std::string name;
-  double objective = 0;  // final E
-};
-
 struct SolverSummary {
   std::string solver;
   std::vector<std::string> own_options;  // SolverEntry::options; empty without MakeSolver

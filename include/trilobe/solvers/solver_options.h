@@ -41,11 +41,23 @@ enum class LinearSolver {
 };
 const char* LinearSolverName(LinearSolver linear_solver);  // "auto", "dense_qr", ...
 
+// Result of one starting point.
+struct StartResult {
+  std::string name;      // of a random one with its seed, "roughness/7"
+  double objective = 0;  // final E
+  int minimum = 0;       // in which it ended: 1 is the lowest; 0 where minima are not told apart
+};
+
 // How far a solver is that tries several starts, in rounds.
 struct StartProgress {
   int ended = 0, starts = 0;  // of this round
   int round = 1, rounds = 1;
   double share = 0;  // of all joint steps that the rounds may take; starts that converge take fewer
+
+  // A start that is at its end, where minima are told apart: after its round, in further calls.
+  // `minimum` is among the starts so far, the lowest E of which is `lowest`.
+  std::optional<StartResult> start = std::nullopt;
+  double lowest = 0;
 };
 
 // Options of a run. All solvers read the options before g_filter_sigma and `stop`. The others are

@@ -43,6 +43,7 @@ Json ToJson(const std::vector<StartResult>& starts) {
   Json array = Json::array();
   for (const StartResult& start : starts) {
     array.push_back({{"name", start.name}, {"objective", start.objective}});
+    if (start.minimum > 0) array.back()["minimum"] = start.minimum;
   }
   return array;
 }

@@ -5,6 +5,8 @@
 
 #include "solvers/ceres/ceres_run.h"
 #include "solvers/ceres/condensed_cost.h"
+#include "solvers/ceres/dogleg.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
@@ -43,6 +45,17 @@ class Lm : public Solver {
 };
 
 }  // namespace
+
+FactorModel AfterDoglegSteps(const Objective& objective, FactorModel model, int steps,
+                             const StopCheck& stop, PhaseSeconds* phases) {
+  SolverOptions options;
+  options.trust_region = TrustRegion::kDogleg;
+  options.max_iterations = steps;
+  options.diagnose = false;
+  options.stop = [&stop] { return stop(); };
+  *phases += Lm().Solve(objective, options, &model).phases;
+  return model;
+}
 
 SolverEntry LmEntry() {
   return {.name = "lm",

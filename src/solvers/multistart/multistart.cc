@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "model/lobes/gauge.h"
+#include "solvers/ceres/dogleg.h"
 #include "solvers/joint/joint_step.h"
+#include "solvers/multistart/minima.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/multistart/stiff_starts.h"
 #include "trilobe/core/base/stop_check.h"
@@ -65,7 +69,9 @@ class Starts {
 
   void EnterOne(size_t number) {
     const std::span<const std::string_view> names = Names();
-    const std::string_view name = number < names.size() ? names[number] : "roughness";
+    const std::string_view name = number < names.size()              ? names[number]
+                                  : (number - names.size()) % 2 == 0 ? "dogleg"
+                                                                     : "roughness";
     const auto stiff = std::ranges::find(StiffStarts(), name, &StiffStart::name);
     if (name == "given") {
       elimination_->Enter("given", [this](PhaseSeconds*) { return given_; });
@@ -80,6 +86,8 @@ class Starts {
     } else if (name == "roughness") {
       const uint64_t seed = seed_ + random_++;
       EnterInitial(name, seed, "roughness/" + std::to_string(seed));
+    } else if (name == "dogleg") {
+      EnterDogleg(seed_ + random_++);
     } else {
       EnterInitial(name, seed_, std::string(name));
     }
@@ -111,6 +119,21 @@ class Starts {
   void EnterSwept() {
     elimination_->Enter("swept", [this](PhaseSeconds*) { return given_; },
                         {.count = 60, .in_blocks = false});
+  }
+
+  // A random roughness, from which longer steps lead elsewhere.
+  void EnterDogleg(uint64_t seed) {
+    constexpr int kSteps = 60;
+    elimination_->Enter(
+        "dogleg/" + std::to_string(seed),
+        [this, seed](PhaseSeconds* phases) {
+          FactorModel model =
+              WithUnobservedBins(FindInitialModel("roughness").make(objective_, seed));
+          // A solver refuses to begin there; a start ends there.
+          if (!std::isfinite(elimination_->thinned().Value(model))) return model;
+          return AfterDoglegSteps(elimination_->thinned(), std::move(model), kSteps, stop_, phases);
+        },
+        {.count = 0});
   }
 
   void EnterInitial(std::string_view init, uint64_t seed, std::string name) {
@@ -175,9 +198,13 @@ double ExpectedMismatch(const Objective& thinned) {
   return 2 * thinned.spec().num_parameters() / std::max(values, 1.0);
 }
 
+// Says after a round that has led starts to their end whether there have been enough.
+using EnoughStarts = std::function<bool(const Minima&, const StartProgress&)>;
+
 // The rounds one by one, then joint steps on all samples from the best point.
-void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
-               const std::optional<Objective>& coarse, const FactorModel& given, Run* run) {
+void RunRounds(const std::vector<Round>& rounds, const EnoughStarts& enough,
+               const Objective& objective, const std::optional<Objective>& coarse,
+               const FactorModel& given, Run* run) {
   // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
   std::optional<JointStepper> stepper;
   const auto begin_at = [&](const FactorModel& model) {
@@ -214,13 +241,13 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
       stepper->ReleaseScratch();
       const size_t number = &round - rounds.data();
       const double before = std::accumulate(steps.begin(), steps.begin() + number, 0.0);
+      StartProgress progress{.round = static_cast<int>(number) + 1,
+                             .rounds = static_cast<int>(rounds.size())};
       elimination.Advance(round.tries, [&](int ended, int count) {
-        if (!run->options().on_start) return;
-        run->options().on_start({.ended = ended,
-                                 .starts = count,
-                                 .round = static_cast<int>(number) + 1,
-                                 .rounds = static_cast<int>(rounds.size()),
-                                 .share = (before + steps[number] * ended / count) / all_steps});
+        progress.ended = ended;
+        progress.starts = count;
+        progress.share = (before + steps[number] * ended / count) / all_steps;
+        if (run->options().on_start) run->options().on_start(progress);
       });
       elimination.Keep(round.keep);
       for (const StartResult& start : elimination.Results()) {
@@ -235,9 +262,13 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
       const bool large = mismatch > kLargeMismatch + ExpectedMismatch(elimination.thinned());
-      if (large && &round != &rounds.back()) elimination.ThinLess();
+      const bool go_on_from_here = round.tries < rounds.back().tries;
+      if (large && go_on_from_here) elimination.ThinLess();
+      if (!enough || go_on_from_here) continue;
+      if (enough(FindMinima(elimination, objective), progress)) break;
     }
-    run->summary().starts = elimination.Results();
+    run->summary().starts =
+        enough ? FindMinima(elimination, objective).starts : elimination.Results();
     run->summary().phases += starts.phases();
     run->summary().phases += elimination.phases();
   }
@@ -288,7 +319,7 @@ class Auto : public Solver {
     const std::vector<Round> rounds = objective.spec().anisotropic() ? FewRounds()
                                       : coarse                       ? RoundsByCoarse()
                                                                      : Rounds();
-    RunRounds(rounds, objective, coarse, FactorModel(*model), &run);
+    RunRounds(rounds, nullptr, objective, coarse, FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     // A few steps of an anisotropic model tell which start is best, but not whether two agree.
     if (tried.size() > 1 && !objective.spec().anisotropic()) {
@@ -301,29 +332,37 @@ class Auto : public Solver {
 
 class Multistart : public Solver {
  private:
+  // So many starts at a time are led to their end. The first ones stop after few steps: on these
+  // samples they may be misled.
+  static std::vector<Round> Rounds(int starts) {
+    constexpr int kTogether = 8, kFewTries = 10, kTries = 100;
+    const int first = std::min(starts, kTogether);
+    std::vector<Round> rounds = {{.starts = first, .tries = kFewTries, .keep = first}};
+    for (int count = first; count < starts + kTogether; count += kTogether) {
+      rounds.push_back({.starts = std::min(count, starts), .tries = kTries, .keep = 0});
+    }
+    return rounds;
+  }
+
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("multistart", objective, options, model);
-    const int n = options.starts, half = (n + 1) / 2;
-    RunRounds({{.starts = n, .tries = 10, .keep = n},
-               {.starts = n, .tries = 25, .keep = half},
-               {.starts = n, .tries = 100, .keep = half}},
-              objective, CoarseObjective(objective), FactorModel(*model), &run);
-    const std::vector<StartResult>& tried = run.summary().starts;
-    if (!tried.empty()) run.summary().notes.push_back(Within(tried));
-    return run.Finish();
-  }
-
-  static std::string Within(const std::vector<StartResult>& starts) {
-    const auto within = [&](double fraction) {
-      return std::ranges::count_if(starts, [&](const StartResult& start) {
-        return start.objective <= (1 + fraction) * starts.front().objective;
-      });
+    std::set<std::string> told;
+    std::string note;
+    const EnoughStarts enough = [&](const Minima& minima, StartProgress progress) {
+      progress.lowest = minima.starts.front().objective;
+      for (const StartResult& start : minima.starts) {
+        if (!told.insert(start.name).second || !run.options().on_start) continue;
+        progress.start = start;
+        run.options().on_start(progress);
+      }
+      note = minima.Describe();
+      return minima.Enough();
     };
-    std::ostringstream text;
-    text << "of " << starts.size() << " starts " << within(1e-3)
-         << " came within 0.1 % of the best E, " << within(1e-2) << " within 1 %";
-    return text.str();
+    RunRounds(Rounds(options.starts), enough, objective, CoarseObjective(objective),
+              FactorModel(*model), &run);
+    if (!note.empty()) run.summary().notes.push_back(note);
+    return run.Finish();
   }
 };
 
@@ -338,7 +377,7 @@ SolverEntry AutoEntry() {
 
 SolverEntry MultistartEntry() {
   return {.name = "multistart",
-          .description = "as auto, with as many starts as you like; tells how many agree",
+          .description = "as auto, with random starts until three agree and few minima are unseen",
           .reference = "docs/solvers.md",
           .options = {"starts", "seed"},
           .make = [] { return std::make_unique<Multistart>(); }};

@@ -205,6 +205,12 @@ std::vector<StartResult> StartElimination::Results() const {
   return results;
 }
 
+std::vector<const FactorModel*> StartElimination::Models() const {
+  std::vector<const FactorModel*> models;
+  for (const Candidate* const candidate : Ranked()) models.push_back(&candidate->model());
+  return models;
+}
+
 PhaseSeconds StartElimination::phases() const {
   PhaseSeconds sum;
   for (const auto& candidate : candidates_) sum += candidate->phases();

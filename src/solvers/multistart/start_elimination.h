@@ -80,6 +80,9 @@ class StartElimination {
   // All begun starts by rank, with E on all samples estimated from the thinned ones.
   std::vector<StartResult> Results() const;
 
+  // The models of Results(), in the same order.
+  std::vector<const FactorModel*> Models() const;
+
   // Times summed over the starts, which run in parallel.
   PhaseSeconds phases() const;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/lobes/gauge.h"
+#include "solvers/multistart/minima.h"
 #include "solvers/multistart/start_elimination.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
@@ -57,7 +58,15 @@ TEST_P(Multistart, TellsHowFarTheStartsAre) {
   SolverOptions options = Iterations(kWholeRace);
   options.starts = 10;
   std::vector<StartProgress> told;
-  options.on_start = [&](const StartProgress& progress) { told.push_back(progress); };
+  std::vector<StartResult> ended;
+  options.on_start = [&](const StartProgress& progress) {
+    if (progress.start) {
+      EXPECT_LE(progress.lowest, progress.start->objective);
+      ended.push_back(*progress.start);
+    } else {
+      told.push_back(progress);
+    }
+  };
   const SolverSummary summary = Solve(objective, options, &model);
   ASSERT_GE(told.size(), summary.starts.size());
   double before = 0;
@@ -72,6 +81,13 @@ TEST_P(Multistart, TellsHowFarTheStartsAre) {
   EXPECT_EQ(told.back().ended, told.back().starts);
   EXPECT_EQ(told.back().round, told.back().rounds);
   EXPECT_EQ(summary.given.on_start, nullptr);
+  // Each with its minimum, by the solver that tells them apart.
+  if (GetParam() == std::string("multistart")) {
+    EXPECT_EQ(ended.size(), summary.starts.size());
+    EXPECT_TRUE(std::ranges::all_of(ended, [](const auto& start) { return start.minimum > 0; }));
+  } else {
+    EXPECT_TRUE(ended.empty());
+  }
 }
 
 TEST_P(Multistart, NamesTheStartsBestFirst) {
@@ -85,7 +101,7 @@ TEST_P(Multistart, NamesTheStartsBestFirst) {
   std::vector<std::string> expected = {"given", "wide", "narrow"};
   if (GetParam() == std::string("multistart")) {
     expected.insert(expected.end(), {"highlight", "middle", "analytic", "roughness/7", "swept",
-                                     "roughness/8", "roughness/9"});
+                                     "dogleg/8", "roughness/9"});
   }
   EXPECT_THAT(Names(summary), testing::UnorderedElementsAreArray(expected));
   EXPECT_TRUE(std::ranges::is_sorted(summary.starts, {}, &StartResult::objective));
@@ -186,7 +202,9 @@ TEST_P(Multistart, GivesTheSameBitsForAnyThreads) {
   for (const int threads : {1, 2}) {
     const Objective objective = NoisyObjective(spec, threads);
     FactorModel model = FindInitialModel("random").make(objective, 3);
-    const SolverSummary summary = Solve(objective, Iterations(kWholeRace), &model);
+    SolverOptions options = Iterations(kWholeRace);
+    options.starts = 12;  // some of them by dogleg steps
+    const SolverSummary summary = Solve(objective, options, &model);
     if (threads == 1) {
       one = summary;
       model_of_one = model;
@@ -352,14 +370,28 @@ TEST(MultistartOnly, SaysHowManyStartsAgree) {
   SolverOptions options = Iterations(5);
   options.starts = 6;
   const SolverSummary summary = MakeSolver("multistart")->Solve(objective, options, &model);
-  const auto within = [&](double fraction) {
-    const double limit = (1 + fraction) * summary.starts.front().objective;
-    return std::to_string(std::ranges::count_if(
-        summary.starts, [&](const StartResult& start) { return start.objective <= limit; }));
-  };
-  EXPECT_THAT(summary.notes, testing::ElementsAre("of 6 starts " + within(1e-3) +
-                                                  " came within 0.1 % of the best E, " +
-                                                  within(1e-2) + " within 1 %"));
+  const Minima minima{.starts = summary.starts};
+  EXPECT_EQ(minima.starts.front().minimum, 1);
+  EXPECT_THAT(summary.notes, testing::ElementsAre(minima.Describe()));
+}
+
+// Each start of the same small problem leads to the one minimum that it has.
+TEST(MultistartOnly, EndsWhereRandomStartsAgree) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  const FactorModel truth = RandomModel(spec, 2, 0.5);
+  BrdfTable table = TableOf(truth, kGrid);
+  Random random(3);
+  for (auto& plane : table.stored) {
+    for (double& x : plane) x *= random.LogNormal(0.01);
+  }
+  const Objective objective = MakeObjective(table, spec, "compressive");
+  FactorModel model = RandomModel(spec, 1);
+  SolverOptions options = Iterations(100);
+  options.starts = 100;
+  const SolverSummary summary = MakeSolver("multistart")->Solve(objective, options, &model);
+  EXPECT_EQ(summary.starts.size(), 16U);  // of which eight are random
+  EXPECT_TRUE((Minima{.starts = summary.starts}.Enough()));
+  EXPECT_THAT(Names(summary), testing::Contains(testing::StartsWith("dogleg/")));
 }
 
 }  // namespace
