@@ -42,9 +42,9 @@ std::string BudgetText(const SceneBudget& budget) {
     case SceneBudget::Unit::kPsnrDrop:
       return "PSNR may fall by " + amount + " dB";
     case SceneBudget::Unit::kMeanDeltaE:
-      return "the sphere's mean Delta E may be " + amount;
+      return "mean Delta E may be " + amount;
     case SceneBudget::Unit::kSpherePsnr:
-      return "the sphere's PSNR must be " + amount + " dB";
+      return "the PSNR of what is seen must be " + amount + " dB";
     case SceneBudget::Unit::kBytes:
       return "at most " + amount + " bytes";
     case SceneBudget::Unit::kSeconds:

@@ -72,7 +72,7 @@ Minima FindMinima(const StartElimination& elimination, const Objective& objectiv
     for (size_t of = 0; of < lowest.size() && start.minimum == 0; ++of) {
       const double E = minima.starts[lowest[of]].objective;
       const bool near = start.objective <= (1 + Minima::kSameMinimum) * E;
-      if (near && MatchLobes(file_of(lowest[of]), file_of(k)).least() >= Minima::kAlike) {
+      if (near && MatchLobes(file_of(lowest[of]), file_of(k)).agreement >= Minima::kAlike) {
         start.minimum = static_cast<int>(of) + 1;
       }
     }

@@ -63,6 +63,14 @@ TEST(SceneFile, MaterialsTakeTheScenesLimitsUnlessTheyHaveTheirOwn) {
   EXPECT_EQ(budget_of(R"({"mean_delta_e": 1.5})").unit, SceneBudget::Unit::kMeanDeltaE);
   EXPECT_EQ(budget_of(R"({"sphere_psnr_db": 40})").unit, SceneBudget::Unit::kSpherePsnr);
   EXPECT_EQ(budget_of(R"({"sphere_psnr_db": 40})").amount, 40);
+  const SceneMaterial told = Material(Text(R"(, "options": {"scale": 0.5, "outliers": true})",
+                                           R"(, "options": {"scale": 2, "cosine": "o:1"})"));
+  const SourceOptions options = WithOptionsOf(told, {.noise = 0.1, .max_angle_deg = 80});
+  EXPECT_EQ(options.scale, 2);
+  EXPECT_EQ(options.cosine_o, 1);
+  EXPECT_TRUE(options.outliers);
+  EXPECT_EQ(options.noise, 0.1);
+  EXPECT_EQ(options.max_angle_deg, 80);
   EXPECT_TRUE(own.reductions.lobes);    // its own
   EXPECT_FALSE(own.reductions.tables);  // the scene's
   EXPECT_FALSE(own.reductions.samples);
