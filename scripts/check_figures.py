@@ -280,7 +280,8 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
 
 def note(page: pathlib.Path, bound: list[Figure], root: pathlib.Path) -> str:
     """The line that a page needs at its top, if any."""
-    tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.is_of_table}
+    of_tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.is_of_table}
+    tables = {folder for folder in of_tables if folder.name.startswith("results")}  # the book of records has no version
     own = {folder for folder in page.parent.glob("results*") if (folder / "manifest.json").exists()}
     stale = {folder: why for folder in sorted(tables | own) if (why := staleness(folder, root))}
     if not stale:
