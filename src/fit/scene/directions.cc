@@ -179,8 +179,9 @@ BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& direc
     const double mean = std::accumulate(selection.reads.begin(), selection.reads.end(), 0.0) /
                         static_cast<double>(selection.reads.size());
     for (double& times : used.multiplicity) times /= mean;
-  } else if (!anisotropic) {
-    EvenOutDensity(&used);
+  } else {
+    used.multiplicity.clear();  // that of all samples, which may lie otherwise than those used
+    if (!anisotropic) EvenOutDensity(&used);
   }
   return used;
 }

@@ -70,7 +70,7 @@ TEST(FindMinima, TellsApartByLobesWhatHasTheSameE) {
   const Objective objective = MakeObjective(RandomTable(kGrid, 1, 0, 0.1), spec, "uniform");
   FactorModel model = RandomModel(spec, 3, 2);
   for (int lobe = 0; lobe < 2; ++lobe) {
-    for (double& s : model.s(lobe)) s *= 1e-9;
+    for (double& s : model.s(lobe)) s *= lobe == 0 ? 1e-9 : 1e-12;  // the first has the light
   }
   FactorModel other = model;  // whose first lobe has a narrow D
   const std::span<double> D = other.table(Factor::kD, 0);
