@@ -126,6 +126,7 @@ bool Pruning::KeepsToBudget(const PruneState& state) const {
 
 void Pruning::SettleForState() {
   constexpr double kNearBest = 1.1;
+  if (!misses_budget_) given_ = {limit_, max_error_};
   misses_budget_ = true;
   E_base_ = state_.E;
   if (limits_error()) {
@@ -136,6 +137,15 @@ void Pruning::SettleForState() {
   } else {
     limit_ = search_limit_ = kNearBest * E_base_;
   }
+}
+
+void Pruning::SettleForBetter() {
+  const double cost = Cost(state_), base = limits_error() ? base_error_ : E_base_;
+  if (cost < base) SettleForState();
+  if (state_.E > given_.limit || (limits_error() && cost > given_.max_error)) return;
+  misses_budget_ = false;
+  limit_ = given_.limit;
+  max_error_ = given_.max_error;
 }
 
 std::string Pruning::CompareWithFull(double E, bool within) const {
@@ -165,8 +175,10 @@ void Pruning::Record(std::string what, const PruneState& next, bool taken, std::
 
 bool Pruning::Decide(std::string what, PruneState next, bool taken, std::string why) {
   Record(std::move(what), next, taken, std::move(why));
-  if (taken) state_ = std::move(next);
-  return taken;
+  if (!taken) return false;
+  state_ = std::move(next);
+  if (misses_budget_) SettleForBetter();
+  return true;
 }
 
 PrunedModel Pruning::Result(LobeOrder order) const {

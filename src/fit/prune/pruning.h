@@ -110,12 +110,18 @@ class Pruning {
   void Withdraw(size_t begin, size_t end, const std::string& why);
 
  private:
+  // After a step to a better state than what was settled for, which may even meet the budget.
+  void SettleForBetter();
+
   const Objective &data_, &objective_;
   const FactorModel& full_;
   const PruneOptions& options_;
   PruneState state_;
   double E_full_ = 0, E_base_ = 0, E_of_prior_ = 0;
   bool misses_budget_ = false;
+  struct {
+    double limit, max_error;
+  } given_ = {};  // before SettleForState
   std::function<double(const PruneState&)> error_;
   double base_error_ = 0, max_error_ = 0;
   bool by_parameters_ = false;

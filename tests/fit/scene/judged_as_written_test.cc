@@ -68,16 +68,11 @@ DirectionRanges Within(double degrees) {
   return {{0, DegreesToRadians(degrees)}, {0, DegreesToRadians(degrees)}};
 }
 
-// The bins at whose centres both directions are within this angle, by the light that a sphere that is
-// lit evenly reflects through them: as trilobe-need counts.
+// The bins at whose centres both directions are within this angle, each read once.
 DirectionHistogram OccurrencesWithin(double degrees) {
   const BrdfTable table = TableOf(Measured(kTable, degrees));
   DirectionHistogram histogram{"counts", table.grid, std::vector<double>(table.grid.size())};
-  const BrdfSamples samples = ValidSamples(table);
-  for (int j = 0; j < samples.size(); ++j) {
-    const Cosines cosines = samples.CosinesOf(j);
-    histogram.counts[samples.bins[j]] = samples.SolidAngle(j) * cosines.i * cosines.o * Mean(samples.rho[j]);
-  }
+  for (const int bin : ValidSamples(table).bins) histogram.counts[bin] = 1;
   return histogram;
 }
 
