@@ -8,7 +8,7 @@ namespace trilobe {
 namespace {
 
 using Json = nlohmann::json;
-using std::string_view_literals::operator""sv;
+using namespace std::string_view_literals;  // NOLINT(google-build-using-namespace): of ""sv
 
 constexpr std::string_view kPng = "\x89PNG\r\n\x1A\n"sv;
 // A chunk of PNG: its length, its name, "Software", "Trilobe", and the checksum of these.
@@ -62,9 +62,9 @@ bool IsOwnJson(std::string_view bytes) {
 
 bool IsOwnPage(std::string_view bytes) {
   constexpr size_t kHead = 4096;
-  return Has(bytes.substr(0, kHead), "<meta name=\"generator\" content=\"trilobe ") ||
+  return Has(bytes.substr(0, kHead), R"(<meta name="generator" content="trilobe )") ||
          // By earlier versions.
-         Has(bytes, "<body class=\"catalogue\">") || Has(bytes, "<body class=\"study\">");
+         Has(bytes, R"(<body class="catalogue">)") || Has(bytes, R"(<body class="study">)");
 }
 
 bool BeginsWithTag(std::string_view bytes) {
@@ -98,8 +98,9 @@ bool SaysOwn(std::string_view bytes) {
   const size_t begin = bytes.find_first_not_of(" \t\r\n");
   if (begin != std::string_view::npos && bytes[begin] == '{') return IsOwnJson(bytes);
   if (BeginsWithTag(bytes)) return IsOwnPage(bytes);
-  if (bytes.starts_with("tensor_file"))
+  if (bytes.starts_with("tensor_file")) {
     return Has(bytes, "fitted by Trilobe") || Has(bytes, "that Trilobe fitted");
+  }
   if (bytes.starts_with(kPlanBegins) && Has(bytes.substr(0, bytes.find('\n')), kPlanColumns)) {
     return true;
   }

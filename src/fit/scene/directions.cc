@@ -15,6 +15,9 @@
 namespace trilobe {
 namespace {
 
+// How far away in phi_d bins still tell of a pair of directions.
+constexpr double kPhiReachDegrees = 10;
+
 std::string Text(const MerlGrid& grid) {
   return std::to_string(grid.theta_h) + " x " + std::to_string(grid.theta_d) + " x " +
          std::to_string(grid.phi_d);
@@ -92,20 +95,24 @@ Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram
 std::vector<BinShare> BinsAround(const MerlGrid& grid, const HalfDiffAngles& angles) {
   const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
   const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);
-  const double phi = angles.phi_d / kPi * grid.phi_d - 0.5, below = std::floor(phi);
-  const int first = static_cast<int>(below);
+  const double phi = angles.phi_d / kPi * grid.phi_d - 0.5;
+  const double reach = std::max(DegreesToRadians(kPhiReachDegrees) / kPi * grid.phi_d, 1.0);
   std::vector<BinShare> shares;
-  for (const auto& [p, of_phi] : {std::pair(first + grid.phi_d, 1 - (phi - below)),
-                                  std::pair(first + 1 + grid.phi_d, phi - below)}) {
+  double sum = 0;
+  for (int p = static_cast<int>(std::ceil(phi - reach)); p <= phi + reach; ++p) {
+    const double of_phi = 1 - std::abs(p - phi) / reach;
+    if (!(of_phi > 0)) continue;
+    const int at = (p % grid.phi_d + grid.phi_d) % grid.phi_d;
     for (int a = 0; a < h.size; ++a) {
       for (int b = 0; b < d.size; ++b) {
         const double share = of_phi * h.weight[a] * d.weight[b] / 2;
-        const int at = p % grid.phi_d;
         shares.push_back({grid.Index(h.index[a], d.index[b], at), share});
         shares.push_back({grid.Index(h.index[a], d.index[b], grid.phi_d - 1 - at), share});
+        sum += 2 * share;
       }
     }
   }
+  for (BinShare& share : shares) share.share /= sum;
   return shares;
 }
 

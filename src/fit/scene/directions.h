@@ -48,9 +48,10 @@ using SceneDirections =
 // order of a plane of a MERL file, little-endian. Throws Error that names `source`.
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source);
 
-// The bins between whose centres a pair of directions lies, eight at most, and their mirror bins,
-// whose directions are exchanged; with the shares of their values in the interpolated one, which
-// add up to 1. A bin may occur twice.
+// The bins that tell of a pair of directions, with the shares of their values, which add up to 1:
+// in theta_h and theta_d those that are interpolated between, in phi_d, along which BRDFs change
+// little, those within 10 degrees, by a tent, so that noise cancels. Mirror bins, whose directions
+// are exchanged, share alike. A bin may occur twice.
 struct BinShare {
   int bin;
   double share;

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_FIT_SCENE_SCENE_READS_H_
 #define TRILOBE_FIT_SCENE_SCENE_READS_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "fit/scene/directions.h"
@@ -12,17 +13,17 @@
 
 namespace trilobe {
 
-// A scene as the values that it reads of a measurement. Each read is a patch of the picture, in
-// which noise cancels as it does in a renderer.
+// A scene as the values that it reads of a measurement. Each read is a patch of the picture.
+//
+// Noise of the measurement is no error of a model, so a read is a mean over bins nearby that differ
+// in phi_d, along which BRDFs change little.
 class SceneReads {
  public:
-  // `all`: the samples of the measurement; `used`: UsedSamples of these. A read is
-  // - a pair of a list, interpolated between the bins around it; or else
-  // - the used bins of one theta_h, two theta_d and a third of the phi_d, whose exchanged
-  // directions
-  //   are the same: by their counts, or by the light that a uniformly lit sphere sends through
-  //   them. The measured colour is the fitted one times the ratio of measured to fitted values over
-  //   all bins of that place, used or not.
+  // `all`: the samples of the measurement; `used`: UsedSamples of these. A read is a pair of a
+  // list, by its BinsAround. Of other directions it is the used bins of a place (one theta_h, two
+  // theta_d and a third of the phi_d, exchanged directions being one), by their counts, or by the
+  // light that a uniformly lit sphere sends through them; what was measured there is then the mean
+  // of all bins within 15 degrees of phi_d.
   SceneReads(const BrdfSamples& all, BrdfSamples used, const SceneDirections& directions);
 
   // The visible difference of a model and the measurement, in what is read.
@@ -39,16 +40,22 @@ class SceneReads {
   };
 
   void AddPairs(const DirectionList& list);
-  void AddCells(const BrdfSamples& all);
-  // Adds none, and returns false, where all shares are 0.
-  bool AddRead(const std::vector<Share>& shares, double weight);
-  SeenPatch PatchOf(const Read& read, const std::vector<Rgb>& fitted) const;
+  void AddCells();
+  // Adds none where all shares are 0.
+  void AddRead(const std::vector<Share>& shares, double weight);
+
+  void FindNeighbours(const BrdfSamples& all);
+  // What was measured at used_, by a model that has `fitted` there.
+  std::vector<Rgb> MeasuredLike(const std::vector<Rgb>& fitted, const FactorModel& model,
+                                int num_threads) const;
 
   BrdfSamples used_, around_;
+  // In around_, of all of used_ in turn; and where those of each end.
+  std::vector<int> neighbours_;
+  std::vector<int64_t> neighbours_end_;
   std::vector<Cosines> cosines_;  // of used_
   std::vector<Read> reads_;
   std::vector<Share> shares_;
-  std::vector<int> read_of_around_;  // the read whose place it tells
 };
 
 }  // namespace trilobe

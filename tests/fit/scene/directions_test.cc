@@ -85,13 +85,14 @@ TEST(UsedSamples, RangesAndListsKeepMirroredPairsTogether) {
 TEST(UsedSamples, AListUsesTheBinsAroundEachDirection) {
   const BrdfSamples samples = ValidSamples(RandomTable(kGrid, 4, /*lost=*/0));
   const HalfDiffAngles center = kGrid.Center(3, 4, 5);
-  // Just beyond a bin's centre in each coordinate: that bin and the next ones.
+  // Just beyond a bin's centre in each coordinate: that bin and the next ones; in phi_d those that
+  // are less than 10 degrees away.
   const HalfDiffAngles angles = {center.theta_h + 1e-6, center.theta_d + 1e-6, center.phi_d + 1e-6};
   const BrdfSamples used = UsedSamples(samples, DirectionList{{angles}});
   std::vector<int> expected;
   for (const int h : {3, 4}) {
     for (const int d : {4, 5}) {
-      for (const int p : {5, 6, 17, 18}) expected.push_back(kGrid.Index(h, d, p));
+      for (const int p : {4, 5, 6, 17, 18, 19}) expected.push_back(kGrid.Index(h, d, p));
     }
   }
   EXPECT_EQ(used.bins, expected);
