@@ -367,7 +367,7 @@ def _parsed_options(arguments: list[str] | None) -> tuple[Path, Path, Options]:
     parser.add_argument("--depth", type=int, default=6, help="how many edges of a path are counted (6)")
     parser.add_argument("--flip", type=float, default=0.01, help="mean FLIP that the picture may be off by (0.01)")
     parser.add_argument("--delta-e", default="2,1,0.5,0.2",
-                        help="budgets that are tried in turn: mean Delta E of what is read of each material (2,1,0.5,0.2)")
+                        help="budgets that are tried in turn: mean Delta E of what is read of a material (2,1,0.5,0.2)")
     parser.add_argument("--variant", default="llvm_ad_rgb", help="of Mitsuba, a compiled one (llvm_ad_rgb)")
     parser.add_argument("--program", help="the trilobe to run; by default the one beside this Python, or on the PATH")
     given, flags = parser.parse_known_args(arguments)
