@@ -52,7 +52,7 @@ def units(setting):
                    *(f"{source.name}={_source(source.path)}" for source in _materials(setting)),
                    "--paths", *(word for render in renders.items() for word in render)),
                   f"{LUMINANCE}.json", labels={"reads": ""})
-    names = ["within", "share", *(f"pairs-{count}" for count in manifest["pairs"]), *renders,
+    names = [*(f"pairs-{count}" for count in manifest["pairs"]), "share", "within", *renders,
              LUMINANCE]
     flags = fits.words(manifest["flags"])
     return [scenes] + [

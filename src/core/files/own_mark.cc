@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/files/json_value.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
 
-using Json = nlohmann::json;
 using namespace std::string_view_literals;  // NOLINT(google-build-using-namespace): of ""sv
 
 constexpr std::string_view kPng = "\x89PNG\r\n\x1A\n"sv;
@@ -36,28 +38,34 @@ bool Has(std::string_view text, std::string_view part) {
 }
 
 // The value of a member, if it is a string.
-std::string StringIn(const Json& json, const char* member) {
-  const auto found = json.find(member);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+std::string StringIn(const JsonValue& json, std::string_view member) {
+  const JsonValue* const found = json.Find(member);
+  return found != nullptr && found->type() == JsonValue::Type::kString ? found->string() : "";
 }
 
-bool IsOwnJson(std::string_view bytes) {
-  const Json json = Json::parse(bytes, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) return false;
+bool IsOwnObject(const JsonValue& json, std::string_view bytes) {
+  if (json.type() != JsonValue::Type::kObject) return false;
   const std::string format = StringIn(json, "format");
   constexpr std::array kFormats = {"trilobe-model", "trilobe-terms", "trilobe-report",
                                    kPlanFormat,     kFormsFormat,    kStudyFormat};
   if (std::ranges::find(kFormats, format) != kFormats.end()) return true;
   if (format == "blender-principled") return Has(StringIn(json, "made"), "found by trilobe ");
   if (!format.empty()) return false;
-  if (const auto metadata = json.find("metadata"); metadata != json.end()) {  // of OpenMATERIAL
-    return metadata->is_object() && Has(metadata->dump(), kOwnMark);
-  }
+  const auto has = [&](std::string_view member) { return json.Find(member) != nullptr; };
+  if (has("metadata")) return Has(bytes, kOwnMark);  // of OpenMATERIAL
   // Reports, plans and comparisons of forms by earlier versions.
-  const auto has = [&](const char* member) { return json.contains(member); };
   return (has("run") && has("files") && (has("key") || has("unfinished"))) ||
          (has("scene") && has("materials") && has("threads")) ||
          (has("model") && has("source") && has("forms"));
+}
+
+bool IsOwnJson(std::string_view bytes) {
+  constexpr size_t kMostValues = 8 * kMaxJsonValues;
+  try {
+    return IsOwnObject(JsonValue::Parse(bytes, "", {bytes.size(), kMostValues}), bytes);
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 bool IsOwnPage(std::string_view bytes) {
