@@ -104,8 +104,8 @@ std::string EncodeAddress(std::string_view path) {
 std::string CsvField(std::string_view any_text) {
   constexpr std::string_view kFormula = "=+-@\t\r", kSeparators = ",;\t\"\r\n";
   std::string text = ValidUtf8(any_text);
-  const bool guarded =
-      !text.empty() && (text.front() == '\'' || kFormula.find(text.front()) != std::string_view::npos);
+  const bool guarded = !text.empty() && (text.front() == '\'' ||
+                                         kFormula.find(text.front()) != std::string_view::npos);
   if (guarded) text.insert(0, "'");
   if (!guarded && text.find_first_of(kSeparators) == std::string::npos) return text;
   std::string quoted = "\"";
