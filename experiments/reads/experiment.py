@@ -140,6 +140,7 @@ def _figure(rows):
         of = sorted(of, key=lambda row: row["budget"])
         right.plot([row["budget"] for row in of], [row["parameters"] for row in of], "o-", markersize=4, linewidth=1)
     right.set_xlabel("budget, mean ΔE, in luminance", fontsize=9)
+    right.set_visible(any(row["reads"] == LUMINANCE for row in rows))
     for axes in (left, right):
         axes.set_yscale("log")
         axes.set_ylim(1, 1000)
@@ -152,7 +153,9 @@ def _figure(rows):
 
 def draw(drawn, _):
     rows = drawn["scenes"]
-    products = {"reads.md": _reads_table(rows), "budgets.md": _budgets_table(rows)}
+    products = {"reads.md": _reads_table(rows)}
+    if any(row["reads"] == LUMINANCE for row in rows):
+        products["budgets.md"] = _budgets_table(rows)
     if rows:
         products["kept"] = _figure(rows)
     return products
