@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -142,8 +141,8 @@ constexpr const char* kIterations = "1000000000";  // as many as that time allow
 
 // Whether a flag is given, or is among those that are varied.
 bool IsSet(const std::string& flag, const Values& values) {
-  const auto names = std::views::keys(values);
-  return !IsDefault(flag) || std::ranges::find(names, flag) != names.end();
+  const auto is_it = [&](const auto& value) { return value.first == flag; };
+  return !IsDefault(flag) || std::ranges::any_of(values, is_it);
 }
 
 void SetLimits(const Values& values) {
@@ -165,7 +164,8 @@ FitSettings SettingsOf(const std::string& solver, const Values& values, int star
   SetFlag("solver", solver);
   SetLimits(values);
   // A larger form has a lower E on what it was fitted to.
-  const bool changes_form = std::ranges::any_of(std::views::keys(values), ChangesForm);
+  const bool changes_form =
+      std::ranges::any_of(values, [](const auto& value) { return ChangesForm(value.first); });
   if (IsDefault("held_out") && changes_form) SetFlag("held_out", "true");
   for (const auto& [flag, value] : values) SetFlag(flag, value);
   // What a solver found, without what would follow it. As to auto's choice of a form, that is it.

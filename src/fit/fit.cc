@@ -207,8 +207,9 @@ class Fitting {
           FitWithoutHeldOut(measurement_, options_, fit->model().spec(),
                             [&](const FitOptions& options) -> std::optional<FactorModel> {
                               FitResult part = Fitting(measurement_, options).Run();
-                              if (part.interrupted || part.finished.too_few_to_choose > 0)
+                              if (part.interrupted || part.finished.too_few_to_choose > 0) {
                                 return {};
+                              }
                               return std::move(part.file.model);
                             });
       fit->seconds.held_out = stopwatch_.Lap();

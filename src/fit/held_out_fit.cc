@@ -21,7 +21,7 @@ std::optional<HeldOutError> FitWithoutHeldOut(
 
   FitOptions of_part = options;
   of_part.held_out.reset();
-  of_part.select = [&kept](const BrdfSamples& /*all*/) { return kept; };
+  of_part.select = [&kept](const BrdfSamples& /*all*/) { return BrdfSamples(kept); };
   of_part.compare = of_part.bands = false;
   of_part.on_begin = nullptr;
   of_part.on_progress = nullptr;

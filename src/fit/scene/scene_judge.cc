@@ -27,8 +27,9 @@ Measurement LimitToScene(const SceneMaterial& material, Measurement measured) {
     if (ranges) LimitAngles(std::max(ranges->theta_i.max, ranges->theta_o.max), &measured);
   }
   BrdfSamples samples = SamplesOf(measured);
-  if (material.reductions.samples)
+  if (material.reductions.samples) {
     samples = UsedSamples(samples, material.directions, measured.anisotropic);
+  }
   if (material.channels == SceneChannels::kLuminance) {
     samples = LuminanceOf(std::move(samples));
     measured.formula = nullptr;

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <type_traits>
 
-#include "core/base/text.h"
+#include "core/files/text_lines.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 

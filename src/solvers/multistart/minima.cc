@@ -36,7 +36,7 @@ double Minima::NewMinimum() const {
     ++n;
     seen.insert(start.minimum);
   }
-  const double w = static_cast<double>(seen.size());
+  const auto w = static_cast<double>(seen.size());
   return n < 2 ? 1 : std::min(1.0, w * (w + 1) / (n * (n - 1)));
 }
 
