@@ -82,6 +82,18 @@ def find(places):
     return sources
 
 
+def named(files, sources):
+    """The sources of these files, in this order, which must be among those given; None stands for all."""
+    if files is None:
+        return sources
+    given = {source.name: source for source in sources}
+    missing = [file for file in files if name_of(file) not in given]
+    if missing:
+        raise UsageError(f"the scene's {', '.join(missing)} are not among the files given; give "
+                         "their folders, or --set=materials=null for a scene of all files given")
+    return [given[name_of(file)] for file in files]
+
+
 def every(sources, n):
     """Every n-th name of each list, from the first; of other names every n-th of those given.
 

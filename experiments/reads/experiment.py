@@ -2,25 +2,12 @@
 import json
 import pathlib
 
-from lab import UsageError, fits, materials, stats, tables
+from lab import fits, materials, stats, tables
 from lab.units import FOLDER, Product, Unit
 from renderer import units as rendering
 
 LUMINANCE = "luminance"
 GRID = (90, 90, 180)  # of MERL's tables, and of what is made of RGL's
-
-
-def _materials(setting):
-    """The sources of the manifest's "materials", in its order; null stands for all given."""
-    files = setting.manifest["materials"]
-    if files is None:
-        return setting.sources
-    given = {source.name: source for source in setting.sources}
-    missing = [file for file in files if materials.name_of(file) not in given]
-    if missing:
-        raise UsageError(f"{', '.join(missing)} are not among the files given; give their folders, "
-                         "or --set=materials=null for all files given")
-    return [given[materials.name_of(file)] for file in files]
 
 
 def _source(path):
@@ -47,9 +34,10 @@ def units(setting):
     manifest = setting.manifest
     renders = _renders(setting)
     settings = {key: manifest[key] for key in ("pairs", "budget", "luminance_budgets", "seed")}
+    sources = materials.named(setting.manifest["materials"], setting.sources)
     scenes = Unit("reads/scenes", pathlib.Path(__file__).with_name("write_reads"),
                   (FOLDER, json.dumps(settings),
-                   *(f"{source.name}={_source(source.path)}" for source in _materials(setting)),
+                   *(f"{source.name}={_source(source.path)}" for source in sources),
                    "--paths", *(word for render in renders.items() for word in render)),
                   f"{LUMINANCE}.json", labels={"reads": ""})
     names = [*(f"pairs-{count}" for count in manifest["pairs"]), "share", "within", *renders,

@@ -3,24 +3,11 @@ import json
 import math
 import pathlib
 
-from lab import UsageError, fits, materials, tables
+from lab import fits, materials, tables
 from lab.units import FOLDER, Product, Unit
 
 FULL = "full"  # instead of a budget: nothing left out
 FINEST = 0.1  # %; below, the axis of rises is linear
-
-
-def _scene(setting):
-    """The sources of the manifest's "materials", in its order; null stands for all given."""
-    files = setting.manifest["materials"]
-    if files is None:
-        return setting.sources
-    given = {source.name: source for source in setting.sources}
-    missing = [file for file in files if materials.name_of(file) not in given]
-    if missing:
-        raise UsageError(f"the scene's {', '.join(missing)} are not among the files given; give "
-                         "their folders, or --set=materials=null for a scene of all files given")
-    return [given[materials.name_of(file)] for file in files]
 
 
 def _absolute(path):
@@ -35,9 +22,10 @@ def units(setting):
     """
     budgets = [f"{budget:g}" for budget in setting.manifest["budgets"]]
     flags = fits.words(setting.manifest["flags"])
+    sources = materials.named(setting.manifest["materials"], setting.sources)
     scenes = Unit("scene/files", pathlib.Path(__file__).with_name("write_scenes"),
                   (FOLDER, ",".join(budgets),
-                   *(f"{source.name}={_absolute(source.path)}" for source in _scene(setting))),
+                   *(f"{source.name}={_absolute(source.path)}" for source in sources)),
                   f"rise-{budgets[-1]}.json", labels={"run": "files"})
     fitted, compared = [], []
     for budget in budgets:
