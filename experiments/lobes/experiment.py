@@ -25,21 +25,18 @@ def _thinned(setting):
     if asked is None:
         return []
     program, step = setting.program("thinned_fits"), asked["starts_a_unit"]
-    starts = {solver: of.get("starts", asked["starts"]) for solver, of in asked["solvers"].items()}
 
     def unit(source, solver, name, run, flags, **labels):
-        own = {flag: value for flag, value in asked["solvers"][solver].items() if flag != "starts"}
-        given = {"solvers": solver, "lights": asked["lights"], "models": FOLDER, **own,
+        given = {"solvers": solver, "lights": asked["lights"], "models": FOLDER, **asked["solvers"][solver],
                  **setting.reading(source), **flags}
         return Unit(f"lobes/{source.name}/{solver}-{name}", program, (source.path, *fits.words(given)),
                     labels={"material": source.name, "solver": solver, "run": run, **labels})
-    sources, noise, units = setting.every(asked["every"]), asked["noise"], []
-    for first, source, solver in itertools.product(range(1, max(starts.values()) + 1, step), sources, starts):
-        if first <= starts[solver]:
-            units.append(unit(source, solver, f"from-{first}", STARTS,
-                              {"init": "random", "first_start": first,
-                               "starts": min(step, starts[solver] + 1 - first)}))
-    for source, solver in itertools.product(sources, starts):
+    sources, solvers, noise, units = setting.every(asked["every"]), asked["solvers"], asked["noise"], []
+    for first, source, solver in itertools.product(range(1, asked["starts"] + 1, step), sources, solvers):
+        units.append(unit(source, solver, f"from-{first}", STARTS,
+                          {"init": "random", "first_start": first,
+                           "starts": min(step, asked["starts"] + 1 - first)}))
+    for source, solver in itertools.product(sources, solvers):
         units.append(unit(source, solver, "clean", CLEAN, {"init": "analytic"}))
         units += [unit(source, solver, f"noise-{draw}", NOISE,
                        {"init": "analytic", "corrupt": f"noise:{noise['sigma']}", "data_seed": draw}, seed=draw)

@@ -45,8 +45,8 @@ def test_each_lowers_the_same_e(objective: trilobe.Objective, name: str) -> None
     counted = counting.Counted(objective, start, 0.3, name in methods.LOGARITHMIC)
     try:
         methods.METHODS[name](counted)
-    except Exception:  # as its library passes on that the time is over
-        assert counted.seconds >= counted.budget
+    except Exception as error:  # the time is over, or NLopt sees no further digit (its own test of convergence)
+        assert counted.seconds >= counted.budget or type(error).__name__ == "RoundoffLimited"
     assert counted.trace[0]["objective"] == objective.value(start)
     assert counted.lowest < objective.value(start)
     assert objective.value(counted.x) == pytest.approx(counted.lowest, rel=1e-12)
