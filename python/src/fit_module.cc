@@ -8,12 +8,13 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "io/formats/source_option.h"
 #include "trilobe/io/formats/source.h"
 
 namespace nb = nanobind;
@@ -43,34 +44,50 @@ BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights) {
 
 namespace {
 
-// None for "auto".
-std::optional<double> TiltOf(const nb::dict& options) {
-  if (options.contains("tilt") && options["tilt"].equal(nb::str("auto"))) return std::nullopt;
-  return OptionOf<double>(options, "tilt", "a number of degrees, or auto");
+[[noreturn]] void FailOption(const SourceOption& option) {
+  const bool is_truth = std::holds_alternative<bool>(option.default_value);
+  const bool is_number = std::holds_alternative<double>(option.default_value);
+  throw Error(option.name + " must be " +
+              (is_truth    ? "True or False"
+               : is_number ? "a number"
+                           : "a text, or a number"));
+}
+
+// The text that the flag of an option would have.
+std::string FlagTextOf(const SourceOption& option, const nb::handle& value) {
+  bool truth = false;
+  if (std::holds_alternative<bool>(option.default_value)) {
+    if (!nb::try_cast<bool>(value, truth)) FailOption(option);
+    return truth ? "true" : "false";
+  }
+  if (std::holds_alternative<std::string>(option.default_value) && nb::isinstance<nb::str>(value)) {
+    return nb::cast<std::string>(value);
+  }
+  // Numbers of NumPy are taken, too.
+  double number = 0;
+  if (int64_t integer = 0; nb::try_cast<int64_t>(value, integer)) return std::to_string(integer);
+  if (!nb::try_cast<double>(value, number)) FailOption(option);
+  return nb::cast<std::string>(nb::repr(nb::float_(number)));
+}
+
+// The names of the options of a measurement, and the defaults of their flags.
+nb::dict SourceOptionDefaults() {
+  nb::dict defaults;
+  for (const SourceOption& option : AllSourceOptions()) {
+    std::visit([&](const auto& value) { defaults[option.name.c_str()] = nb::cast(value); },
+               option.default_value);
+  }
+  return defaults;
 }
 
 }  // namespace
 
 SourceOptions SourceOptionsOf(const nb::dict& options) {
-  SourceOptions source{
-      .noise = OptionOf<double>(options, "noise", "a number"),
-      .missing = OptionOf<double>(options, "missing", "a number"),
-      .corrupt = OptionOf<std::string>(options, "corrupt", "a text"),
-      .tilt_deg = TiltOf(options),
-      .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
-      .num_threads = ThreadsOf(options),
-      .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),
-      .min_theta_d_deg = OptionOf<double>(options, "min_theta_d", "a number of degrees"),
-      .extrapolated = OptionOf<bool>(options, "extrapolated", "True or False"),
-      .outliers = OptionOf<bool>(options, "outliers", "True or False"),
-      .dark_noise = OptionOf<bool>(options, "dark_noise", "True or False"),
-      .radiometry = OptionOf<std::string>(options, "radiometry", "a name"),
-      .columns = OptionOf<std::string>(options, "columns", "a text"),
-      .theta_i_deg = OptionOf<double>(options, "theta_i", "a number of degrees"),
-      .bands = OptionOf<std::string>(options, "bands", "a text")};
-  SetCosine(OptionOf<std::string>(options, "cosine", "a number, or o:1"), &source);
-  source.scale = OptionOf<double>(options, "scale", "a number");
-  source.azimuth_from_mirror = OptionOf<bool>(options, "azimuth_from_mirror", "True or False");
+  SourceOptions source{.num_threads = ThreadsOf(options)};
+  for (const SourceOption& option : AllSourceOptions()) {
+    if (!options.contains(option.name.c_str())) continue;
+    option.set(FlagTextOf(option, options[option.name.c_str()]), &source);
+  }
   CheckSourceOptions(source);
   return source;
 }
@@ -90,6 +107,8 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
         }
       },
       nullptr);
+  m.def("source_options", SourceOptionDefaults,
+        nb::sig("def source_options() -> dict[str, object]"));
   BindMeasurement(&m);
   BindFit(&m);
   BindObjective(&m);

@@ -256,7 +256,7 @@ def read(
     corrupt: str = "",
     cosine: float | str = 0,
     scale: float = 1,
-    azimuth_from_mirror: bool = False,
+    azimuth: str = "from_light",
     tilt: float | str = 0,
     seed: int = 1,
     max_angle: float = 90,
@@ -279,7 +279,7 @@ def read(
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
         cosine: takes cos theta_i to this power out of it; of cos theta_o as "o:1".
         scale: a factor of all values, as 0.01 for percents.
-        azimuth_from_mirror: phi_o of scattered samples is counted from the mirror direction.
+        azimuth: "from_mirror" where phi_o of scattered samples is counted from the mirror direction.
         tilt: takes out by how much the sample leant towards azimuth 0 [degrees]; "auto" as the highlight of
             a table shows.
         seed: of whatever is random.
@@ -303,11 +303,11 @@ def read(
         noise=noise,
         missing=missing,
         corrupt=corrupt,
-        cosine=cosine if isinstance(cosine, str) else repr(cosine),
+        cosine=cosine,
         scale=scale,
-        azimuth_from_mirror=azimuth_from_mirror,
+        azimuth=azimuth,
         tilt=tilt,
-        seed=seed,
+        data_seed=seed,
         max_angle=max_angle,
         min_theta_d=min_theta_d,
         extrapolated=extrapolated,
@@ -405,28 +405,8 @@ def _text_of_bands(bands: Any) -> str:
 
 
 def source_options(**given: Any) -> dict[str, Any]:
-    """All options of a source, those that are not given by default."""
-    return {
-        "noise": 0.0,
-        "missing": 0.0,
-        "corrupt": "",
-        "cosine": "0",
-        "scale": 1.0,
-        "azimuth_from_mirror": False,
-        "tilt": 0.0,
-        "seed": 1,
-        "max_angle": 90.0,
-        "min_theta_d": -1.0,
-        "extrapolated": False,
-        "outliers": False,
-        "dark_noise": False,
-        "radiometry": "brdf",
-        "columns": "",
-        "theta_i": -1.0,
-        "bands": "",
-        "threads": 0,
-        **given,
-    }
+    """Options of a source, by the names of their flags; those that are not given have the flags' defaults."""
+    return {"threads": 0, **given}
 
 
 def _name(source: Any) -> str:

@@ -18,6 +18,7 @@
 #include "core/files/file.h"
 #include "fit/reports/print.h"
 #include "io/formats/csv_file.h"
+#include "io/formats/source_option.h"
 #include "io/formats/utia_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/as_measurement.h"
@@ -115,8 +116,11 @@ void WriteForRenderer(const std::string& source) {
 Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
-  RefuseForModel(source, {"noise", "extrapolated", "outliers", "dark_noise", "radiometry",
-                          "columns", "theta_i", "bands"});
+  std::vector<std::string> of_readers;
+  for (const SourceOption& option : AllSourceOptions()) {
+    if (!option.changes_values) of_readers.push_back(option.name);
+  }
+  RefuseForModel(source, of_readers);
   const FactorModel model = ModelOfSource(source).model;
   if (model.spec().anisotropic() && !WritableFormat(out).holds_anisotropic) {
     throw Error("--out=" + out + ": " + source +

@@ -36,7 +36,9 @@ using Json = nlohmann::ordered_json;
 // What a measurement says of single directions, and not only at bins: 0 where it was not measured.
 class MeasuredBrdf {
  public:
-  explicit MeasuredBrdf(const Measurement& measurement) : measurement_(measurement) {
+  // `extrapolated`: also where it was not measured.
+  MeasuredBrdf(const Measurement& measurement, bool extrapolated)
+      : measurement_(measurement), extrapolated_(extrapolated) {
     if (!measurement.look_up) tabulated_.emplace(*measurement.table);
   }
 
@@ -44,12 +46,12 @@ class MeasuredBrdf {
     if (!WithinAngles(pair)) return {0, 0, 0};
     if (tabulated_) return (*tabulated_)(pair);
     const MeasuredValue value = measurement_.look_up(pair);
-    return value.measured || FLAGS_extrapolated ? value.rho : Rgb{0, 0, 0};
+    return value.measured || extrapolated_ ? value.rho : Rgb{0, 0, 0};
   }
 
   bool Measured(const DirectionPair& pair) const {
     return WithinAngles(pair) &&
-           (tabulated_ || FLAGS_extrapolated || measurement_.look_up(pair).measured);
+           (tabulated_ || extrapolated_ || measurement_.look_up(pair).measured);
   }
 
  private:
@@ -58,6 +60,7 @@ class MeasuredBrdf {
   }
 
   const Measurement& measurement_;
+  const bool extrapolated_;
   // Directions at the limit itself count, whatever the last digit of their cosine.
   const double min_cosine_ =
       measurement_.table->max_theta < kPi / 2 ? std::cos(measurement_.table->max_theta) - 1e-12 : 0;
@@ -80,7 +83,7 @@ Json ToJson(const PairError& error) {
           {"percentile_95", error.pairs > 0 ? Json(error.percentile_95) : Json()}};
 }
 
-void DescribeTable(const Measurement& measurement) {
+void DescribeTable(const Measurement& measurement, bool extrapolated) {
   const std::string& source = measurement.source;
   const int num_threads = ThreadsFromFlags();
   const BrdfTable& table = *measurement.table;
@@ -90,7 +93,7 @@ void DescribeTable(const Measurement& measurement) {
   std::optional<PairError> reciprocity;
   std::optional<AlbedoTable> albedo;
   if (bins.valid > 0) {
-    const MeasuredBrdf brdf(measurement);
+    const MeasuredBrdf brdf(measurement, extrapolated);
     albedo = TabulateAlbedo(std::cref(brdf), num_threads, table.max_theta);
     if (measurement.look_up) {
       // A coarser grid: each value costs two inversions of a warp.
@@ -291,10 +294,11 @@ void DescribeScattered(const Measurement& measurement) {
 
 void DescribeMeasurement(const std::string& source) {
   if (!FLAGS_out.empty()) Inputs({source}).CheckOutput(PicturePath());
-  Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
+  const SourceOptions options = SourceOptionsFromFlags();
+  Measurement measurement = LoadMeasurement(source, options);
   NoteSymptoms(ThreadsFromFlags(), &measurement);
   if (measurement.table) {
-    DescribeTable(measurement);
+    DescribeTable(measurement, options.extrapolated);
   } else {
     DescribeScattered(measurement);
   }

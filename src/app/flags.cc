@@ -4,82 +4,27 @@
 
 #include <algorithm>
 #include <iostream>
+#include <list>
 #include <sstream>
 #include <thread>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
 #include "io/formats/source_option.h"
-#include "io/formats/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
-DEFINE_int64(
-    seed, 1,
-    "seed of whatever is random: --init=random, random starts of a solver, and what --data_seed is "
-    "of unless that is given");
-DEFINE_int64(
-    data_seed, -1,
-    "seed of what is done to the measurement: the noise of synth: sources, --missing and "
-    "--corrupt; with one of its own, --seed alone moves the start on the same data; -1: as "
-    "--seed");
+DEFINE_int64(seed, 1,
+             "seed of whatever is random: --init=random, random starts of a solver and, where "
+             "--data_seed is "
+             "not given, what is done to the measurement");
 DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
-DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
-DEFINE_double(
-    missing, 0,
-    "share of the measured bins or samples to leave out at random, by --data_seed, from 0 up "
-    "to 1: how would a fit do with fewer?");
-DEFINE_string(corrupt, "",
-              "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., as "
-              "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
-DEFINE_string(
-    cosine, "0",
-    "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "
-    "to 2: 1 where it has a cosine too many, -1 where it has one too few; o:1 where that "
-    "is cos theta_o; `trilobe info` tells");
-DEFINE_double(scale, 1,
-              "multiply all values by this, from 1e-6 to 1e6: 0.01 for percents, 0.3183 for pi f");
-DEFINE_string(azimuth, "from_light",
-              "from_mirror: azimuths phi_o of scattered samples are counted from the mirror "
-              "direction; `trilobe info` tells");
-DEFINE_string(tilt, "0",
-              "correct a measurement whose sample leant by so many degrees towards azimuth 0, from "
-              "which the light of a table comes, from -30 to 30; `trilobe info` tells; auto: as "
-              "the highlight of a table shows");
-DEFINE_double(max_angle, 90,
-              "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
-DEFINE_double(min_theta_d, -1,
-              "leave out bins whose theta_d, half the angle between the two directions, is below "
-              "this, in degrees, from 0 to below 90, since a detector there stands in its own "
-              "light; -1: as far as scattered samples show that it did");
-DEFINE_bool(extrapolated, false,
-            "of an RGL file, also take what its authors did not measure but extrapolated, and what "
-            "lies beyond its last theta_i");
-DEFINE_bool(
-    outliers, false,
-    "also take the bins of a table that are much darker or brighter than those around them");
-DEFINE_bool(dark_noise, false,
-            "take the readings of a table as they are, though dark noise is more than a tenth of "
-            "their signal; else they become medians of what surrounds them");
-DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
-              "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
-              "(docs/file-formats.md)");
-DEFINE_string(columns, "",
-              "of a text table, the names of its columns, in the place of a header: "
-              "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
-              "wavelength, and - for a column to leave out (docs/file-formats.md)");
-DEFINE_double(theta_i, -1,
-              "of a text table without a column theta_i, the angle of incidence of all its "
-              "samples, in degrees from 0 to below 90");
-DEFINE_string(
-    bands, "",
-    "of spectra, the wavelengths to read, in nm: one, as 550, for all channels; three, as "
-    "650,550,450, as r, g and b, the longest as r; or more, to make a colour of; without, "
-    "all make a colour, and --spectral keeps each (docs/file-formats.md)");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
 DEFINE_string(out, "", "where to write: a file or, for fit, study, info and plot, a folder");
@@ -95,6 +40,47 @@ DEFINE_string(
     "with a sun and area lights");
 
 namespace trilobe {
+
+namespace {
+
+// The values of a flag that is defined by a row of a table, where gflags keeps them.
+struct FlagStorage {
+  OptionValue value, default_value;
+};
+
+// By the names of the flags; addresses stay.
+std::map<std::string, FlagStorage>& Storage() {
+  static std::map<std::string, FlagStorage> storage;
+  return storage;
+}
+
+}  // namespace
+
+void DefineFlag(const std::string& name, const std::string& help,
+                const OptionValue& default_value) {
+  const auto [place, added] = Storage().insert({name, {default_value, default_value}});
+  if (!added) return;
+  // gflags keeps the pointers.
+  static std::list<std::string> texts;
+  const std::string& flag = place->first;
+  const std::string& text = texts.emplace_back(help);
+  std::visit(
+      [&](auto& value) {
+        auto& at_first = std::get<std::decay_t<decltype(value)>>(place->second.default_value);
+        gflags::FlagRegisterer(flag.c_str(), text.c_str(), __FILE__, &value, &at_first);
+      },
+      place->second.value);
+}
+
+const OptionValue& FlagValue(const std::string& name) { return Storage().at(name).value; }
+
+void DefineSourceFlags() {
+  for (const SourceOption& option : AllSourceOptions()) {
+    const std::string range = option.range.must_be;
+    DefineFlag(option.name, option.help + (range.empty() ? "" : ", " + range),
+               option.default_value);
+  }
+}
 
 bool IsDefault(const std::string& flag) {
   return gflags::GetCommandLineFlagInfoOrDie(flag.c_str()).is_default;
@@ -130,7 +116,6 @@ int ThreadsFromFlags() {
 }
 
 SourceOptions SourceOptionsFromFlags() {
-  if (FLAGS_data_seed < -1) throw Error("--data_seed must be 0 or more, or -1: as --seed");
   SourceOptions options = {.seed = static_cast<uint64_t>(FLAGS_seed),
                            .num_threads = ThreadsFromFlags()};
   for (const SourceOption& option : AllSourceOptions()) {

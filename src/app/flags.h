@@ -7,28 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/core/base/option_value.h"
 #include "trilobe/model/appearance/appearance.h"
 
 // Flags shared by several commands.
 DECLARE_int32(threads);
 DECLARE_int32(lobes);
 DECLARE_int64(seed);
-DECLARE_double(noise);
-DECLARE_double(missing);
-DECLARE_string(corrupt);
-DECLARE_string(cosine);
-DECLARE_double(scale);
-DECLARE_string(azimuth);
-DECLARE_string(tilt);
-DECLARE_double(max_angle);
-DECLARE_double(min_theta_d);
-DECLARE_string(radiometry);
-DECLARE_string(columns);
-DECLARE_double(theta_i);
-DECLARE_string(bands);
-DECLARE_bool(extrapolated);
-DECLARE_bool(outliers);
-DECLARE_bool(dark_noise);
 DECLARE_string(weighting);
 DECLARE_string(out);
 DECLARE_bool(force);
@@ -44,6 +29,13 @@ DECLARE_bool(verbose);
 namespace trilobe {
 
 struct SourceOptions;
+
+// Defines a flag by a row of a table of options, once. Call it before the command line is read.
+void DefineFlag(const std::string& name, const std::string& help, const OptionValue& default_value);
+// The value of a flag that DefineFlag has defined. Throws std::out_of_range for another.
+const OptionValue& FlagValue(const std::string& name);
+// Defines the flags of AllSourceOptions().
+void DefineSourceFlags();
 
 // Whether the flag has its default value.
 bool IsDefault(const std::string& flag);

@@ -288,6 +288,7 @@ void OccupyStandardStreams() {
 
 // `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both.
 int Main(int argc, char** argv) {
+  DefineSourceFlags();
   DefineSolverFlags();
   CommandLine line = ReadCommandLine(argc, argv);
   TakeOtherNames(&line);

@@ -3,7 +3,6 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 #include <variant>
 
@@ -15,17 +14,6 @@ DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above
 
 namespace trilobe {
 namespace {
-
-// Where gflags keeps a flag.
-struct FlagStorage {
-  OptionValue value, default_value;
-};
-
-// By the names of the flags; addresses stay.
-std::map<std::string, FlagStorage>& Storage() {
-  static std::map<std::string, FlagStorage> storage;
-  return storage;
-}
 
 // The program has such a flag (flags.h) for other uses, too, so that it is no mistake where the
 // solver does not read it.
@@ -65,16 +53,8 @@ void SetOption(const SolverOption& option, OptionValue value, const ModelSpec& s
 void DefineSolverFlags() {
   for (const SolverOption& option : AllSolverOptions()) {
     if (IsShared(option)) continue;
-    FlagStorage& storage = Storage()[option.flag];
-    storage.default_value = option.unit ? option.unit->default_value : option.get(SolverOptions());
-    storage.value = storage.default_value;
-    std::visit(
-        [&](auto& value) {
-          auto& default_value = std::get<std::decay_t<decltype(value)>>(storage.default_value);
-          gflags::FlagRegisterer(option.flag.c_str(), option.help.c_str(), __FILE__, &value,
-                                 &default_value);
-        },
-        storage.value);
+    DefineFlag(option.flag, option.help,
+               option.unit ? option.unit->default_value : option.get(SolverOptions()));
   }
 }
 
@@ -98,7 +78,7 @@ std::function<SolverOptions(const ModelSpec&)> SolverOptionsByFlags(const Solver
   CheckThatSolverTakesFlags(solver);
   std::vector<std::pair<const SolverOption*, OptionValue>> values;
   for (const SolverOption& option : AllSolverOptions()) {
-    if (!IsShared(option)) values.emplace_back(&option, Storage().at(option.flag).value);
+    if (!IsShared(option)) values.emplace_back(&option, FlagValue(option.flag));
   }
   return [values, seed = static_cast<uint64_t>(FLAGS_seed)](const ModelSpec& spec) {
     SolverOptions options;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <type_traits>
 
 #include "core/base/names.h"
@@ -87,12 +86,6 @@ constexpr OptionRange kFraction = {"at least 0 and below 1",
                                    [](double x) { return x >= 0 && x < 1; }};
 constexpr OptionRange kRightAngle = {"from 0 to 90 degrees",
                                      [](double x) { return x >= 0 && x <= 90; }};
-
-bool IsIn(const OptionRange& range, const OptionValue& value) {
-  if (range.holds == nullptr) return true;
-  if (const int* const number = std::get_if<int>(&value)) return range.holds(*number);
-  return range.holds(std::get<double>(value));
-}
 
 std::vector<SolverOption> MakeOptions() {
   using Options = SolverOptions;
@@ -187,22 +180,10 @@ std::vector<const SolverOption*> OptionsReadBy(std::span<const std::string> part
   return read;
 }
 
-void CheckInRange(const std::string& name, const OptionValue& value, const OptionRange& range) {
-  if (IsIn(range, value)) return;
-  throw Error(name + " is " + ToText(value) + "; it must be " + range.must_be);
-}
-
 void CheckSolverOptions(const SolverOptions& options) {
   for (const SolverOption& option : AllSolverOptions()) {
     CheckInRange(option.name, option.get(options), option.range);
   }
-}
-
-std::string ToText(const OptionValue& value) {
-  std::ostringstream out;
-  out << std::boolalpha;
-  std::visit([&out](const auto& of_type) { out << of_type; }, value);
-  return out.str();
 }
 
 }  // namespace trilobe

@@ -489,7 +489,7 @@ TEST(Fit, ADataSeedKeepsTheDataWhileTheSeedMovesTheStart) {
   EXPECT_NE(initial("both", {"--seed=7"}), one);
   const ProgramResult wrong = RunProgram(Fit(folder / "wrong", {"--data_seed=-2"}));
   EXPECT_EQ(wrong.status, 1);
-  EXPECT_THAT(wrong.err, HasSubstr("--data_seed must be 0 or more"));
+  EXPECT_THAT(wrong.err, HasSubstr("--data_seed=-2: give an integer from 0"));
 }
 
 TEST(Fit, CtrlCKeepsTheBestModelSoFar) {

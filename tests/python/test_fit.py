@@ -1,5 +1,6 @@
 """Measurements and fits: the program's, to the bit."""
 
+import inspect
 import json
 import os
 import pathlib
@@ -112,12 +113,26 @@ def test_arrays_are_counted_like_a_file():
     assert one_channel.rho.shape == (96, 3)
 
 
+def test_read_has_the_options_of_the_program():
+    flags = trilobe._measurement.fits().source_options()
+    keywords = {"data_seed" if name == "seed" else name: parameter.default
+                for name, parameter in inspect.signature(trilobe.read).parameters.items()
+                if name not in ("source", "threads")}
+    assert set(keywords) == set(flags)
+    for name, default in keywords.items():
+        assert name == "data_seed" or str(default) == str(flags[name]) or float(default) == flags[name]
+        assert f"{'seed' if name == 'data_seed' else name}: " in trilobe.read.__doc__
+        if default is not False:
+            with pytest.raises(trilobe.Error, match=name.replace("data_", "")):
+                trilobe.read(SMALL, **{"seed" if name == "data_seed" else name: object()})
+
+
 def test_takes_out_the_tilt_that_the_highlight_shows():
     tilted = trilobe.read("synth:plastic", corrupt="tilt:2", tilt="auto")
     assert [note for note in tilted.notes if "--tilt=auto takes out" in note and "2 deg" in note]
     with pytest.raises(trilobe.Error, match="--tilt=auto goes by the highlight"):
         trilobe.read("synth:felt", tilt="auto")
-    with pytest.raises(trilobe.Error, match="tilt must be a number of degrees, or auto"):
+    with pytest.raises(trilobe.Error, match="--tilt=a lot: give a number of degrees"):
         trilobe.read(SMALL, tilt="a lot")
 
 
@@ -211,7 +226,7 @@ BAD = [
     (lambda: trilobe.read(3), "a path must be a str"),
     (lambda: trilobe.read(SMALL, noise=-1), "noise"),
     (lambda: trilobe.read(SMALL, noise="much"), "noise must be a number"),
-    (lambda: trilobe.read(SMALL, seed=-1), "seed must be an integer from 0"),
+    (lambda: trilobe.read(SMALL, seed=-1), "seed=-1: give an integer from 0"),
     (lambda: trilobe.read(SMALL, threads=-1), "threads is negative"),
     (lambda: trilobe.fit(SMALL, model="round"), "unknown model 'round'"),
     (lambda: trilobe.fit(SMALL, model=None), "model must be a name"),

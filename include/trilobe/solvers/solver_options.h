@@ -8,9 +8,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "trilobe/core/base/option_value.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/iteration_record.h"
 
@@ -111,15 +111,6 @@ struct SolverOptions {
   uint64_t seed = 1;
 };
 
-// Value of an option. Enumerators are given by name.
-using OptionValue = std::variant<bool, int, uint64_t, double, std::string>;
-
-// Valid numbers of an option.
-struct OptionRange {
-  const char* must_be = "";                // for errors: "0 or more"
-  bool (*holds)(double number) = nullptr;  // null: all numbers are valid
-};
-
 // Describes a member of SolverOptions that is not a callback.
 struct SolverOption {
   // For a flag in another unit than the member.
@@ -152,11 +143,7 @@ const SolverOption& FindSolverOption(std::string_view name);
 std::vector<const SolverOption*> OptionsReadBy(std::span<const std::string> particular);
 
 // Throws Error with name and value if a number is out of range.
-void CheckInRange(const std::string& name, const OptionValue& value, const OptionRange& range);
 void CheckSolverOptions(const SolverOptions& options);
-
-// For example "60", "0.001", "true", "active_set".
-std::string ToText(const OptionValue& value);
 
 }  // namespace trilobe
 

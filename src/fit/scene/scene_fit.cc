@@ -140,10 +140,10 @@ class MaterialFitter {
           AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
       measured.xxh128 = fingerprint_;
       const SourceOptions given = WithOptionsOf(material_, settings_.source);
-      for (const SourceOption& option : AllSourceOptions()) {
-        if (option.name == "data_seed" || option.get(given) == option.get({})) continue;
+      for (const SourceOption* const option : GivenOptions(given)) {
+        if (option->name == "data_seed") continue;  // which --seed sets, too
         measured.notes.push_back(
-            "--" + option.name +
+            "--" + option->name +
             " is for measurements, and this is a model; it changes nothing here");
       }
       return measured;

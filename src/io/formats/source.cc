@@ -13,7 +13,7 @@
 #include "core/files/utf16.h"
 #include "core/system/content_hash.h"
 #include "io/formats/foreign_file.h"
-#include "io/formats/spectrum_bands.h"
+#include "io/formats/source_option.h"
 #include "io/formats/table_columns.h"
 #include "io/formats/text_table.h"
 #include "io/formats/utia_file.h"
@@ -137,19 +137,12 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
   return formats.front();  // MERL: it says what is wrong with its header
 }
 
-// Says which of the options that were given this kind of source does not read.
-void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement* measurement) {
-  const auto note = [&](bool given, std::string_view reader, const std::string& what) {
-    if (given && kind != reader) measurement->notes.push_back(what + ", and changes nothing here");
-  };
-  note(options.noise != 0, kSynth, "--noise is of synth: sources");
-  note(options.extrapolated && measurement->table, "rgl",
-       "--extrapolated is of RGL files and of scattered samples");
-  note(options.radiometry != SourceOptions().radiometry, "utia", "--radiometry is of UTIA files");
-  note(options.azimuth_from_mirror && measurement->table, "", "--azimuth is of scattered samples");
-  note(!options.columns.empty(), "csv", "--columns is of text tables");
-  note(options.theta_i_deg != -1, "csv", "--theta_i is of text tables");
-  note(!options.bands.empty() && measurement->bands == 0, "", "--bands is of spectra");
+// Notes which of the options that were given cannot change this measurement.
+void NoteUnread(const SourceOptions& options, std::string_view reader, Measurement* measurement) {
+  for (const SourceOption* const given : GivenOptions(options)) {
+    if (given->applies == nullptr || given->applies(reader, *measurement)) continue;
+    measurement->notes.push_back(given->of + ", and changes nothing here");
+  }
 }
 
 // Applies `change`, which notes what it does, unless an option keeps the readings. An option that
@@ -232,42 +225,6 @@ void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   apply("scale", options.scale);
   Corrupt(corruptions, options.seed, options.num_threads, measurement);
   if (options.azimuth_from_mirror && !measurement->table) TurnAzimuths(measurement);
-}
-
-void SetCosine(std::string_view text, SourceOptions* options) {
-  const bool outgoing = text.starts_with("o:");
-  const bool named = outgoing || text.starts_with("i:");
-  const std::optional<double> exponent = ToNumber(text.substr(named ? 2 : 0));
-  if (!exponent) {
-    throw Error("--cosine=" + std::string(text) +
-                ": give the exponent of cos theta_i that values have been multiplied by, as 1, or "
-                "of cos theta_o, as o:1");
-  }
-  (outgoing ? options->cosine_o : options->cosine) = *exponent;
-}
-
-void CheckSourceOptions(const SourceOptions& options) {
-  const double angle = options.max_angle_deg, theta_d = options.min_theta_d_deg;
-  CheckNumThreads(options.num_threads);
-  CheckNumber("--noise", options.noise, options.noise >= 0 && options.noise <= 1, "from 0 to 1");
-  CheckNumber("--missing", options.missing, options.missing >= 0 && options.missing < 1,
-              "from 0 up to 1");
-  CheckNumber("--max_angle", angle, angle > 0 && angle <= 90, "in degrees above 0, up to 90");
-  CheckNumber("--min_theta_d", theta_d, theta_d == -1 || (theta_d >= 0 && theta_d < 90),
-              "in degrees from 0 to below 90, or -1 to go by the data");
-  FindNamed("radiometry", options.radiometry, UtiaRadiometries());
-  const double theta_i = options.theta_i_deg;
-  CheckNumber("--theta_i", theta_i, theta_i == -1 || (theta_i >= 0 && theta_i < 90),
-              "in degrees from 0 to below 90, or -1 for none");
-  ParseCorruptions(options.corrupt);
-  ParseBands(options.bands);
-  const double tilt = options.tilt_deg.value_or(0);
-  CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
-  for (const double exponent : {options.cosine, options.cosine_o}) {
-    CheckNumber("--cosine", exponent, exponent >= -2 && exponent <= 2, "from -2 to 2");
-  }
-  CheckNumber("--scale", options.scale, options.scale >= 1e-6 && options.scale <= 1e6,
-              "from 1e-6 to 1e6");
 }
 
 const std::vector<MeasurementFormat>& MeasurementFormats() {

@@ -1,12 +1,17 @@
 #include "io/formats/source_option.h"
 
+#include <charconv>
 #include <optional>
 #include <sstream>
 #include <type_traits>
 
+#include "core/base/names.h"
 #include "core/files/text_lines.h"
+#include "io/formats/spectrum_bands.h"
+#include "io/formats/utia_file.h"
+#include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/io/formats/source.h"
+#include "trilobe/model/corruption/corruption.h"
 
 namespace trilobe {
 namespace {
@@ -41,27 +46,29 @@ struct Name {
   }
 };
 
-// The option that is this member.
+// The row of the option that is this member.
 template <Name kName, auto kMember>
-SourceOption Option() {
+SourceOption Option(SourceOption row) {
   using T = std::decay_t<decltype(SourceOptions().*kMember)>;
-  return {kName.text,
-          [](std::string_view text, SourceOptions* options) {
-            if constexpr (std::is_same_v<T, std::string>) {
-              options->*kMember = std::string(text);
-            } else if constexpr (std::is_same_v<T, bool>) {
-              options->*kMember = TruthOf(kName.text, text);
-            } else {
-              options->*kMember = NumberOf(kName.text, text);
-            }
-          },
-          [](const SourceOptions& options) {
-            if constexpr (std::is_same_v<T, std::string>) {
-              return options.*kMember;
-            } else {
-              return TextOf(options.*kMember);
-            }
-          }};
+  row.name = kName.text;
+  row.default_value = SourceOptions().*kMember;
+  row.set = [](std::string_view text, SourceOptions* options) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      options->*kMember = std::string(text);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      options->*kMember = TruthOf(kName.text, text);
+    } else {
+      options->*kMember = NumberOf(kName.text, text);
+    }
+  };
+  row.get = [](const SourceOptions& options) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      return options.*kMember;
+    } else {
+      return TextOf(options.*kMember);
+    }
+  };
+  return row;
 }
 
 void SetTilt(std::string_view text, SourceOptions* options) {
@@ -69,6 +76,19 @@ void SetTilt(std::string_view text, SourceOptions* options) {
   if (text != "auto" && !options->tilt_deg) {
     Fail("tilt", text, "a number of degrees from -30 to 30, or auto");
   }
+}
+
+// By "1" or "i:1" of cos theta_i, by "o:1" of cos theta_o.
+void SetCosine(std::string_view text, SourceOptions* options) {
+  const bool outgoing = text.starts_with("o:");
+  const bool named = outgoing || text.starts_with("i:");
+  const std::optional<double> exponent = ToNumber(text.substr(named ? 2 : 0));
+  if (!exponent) {
+    throw Error("--cosine=" + std::string(text) +
+                ": give the exponent of cos theta_i that values have been multiplied by, as 1, or "
+                "of cos theta_o, as o:1");
+  }
+  (outgoing ? options->cosine_o : options->cosine) = *exponent;
 }
 
 void SetAzimuth(std::string_view text, SourceOptions* options) {
@@ -79,42 +99,165 @@ void SetAzimuth(std::string_view text, SourceOptions* options) {
 }
 
 void SetDataSeed(std::string_view text, SourceOptions* options) {
-  constexpr double kMost = 9007199254740992;  // up to which a double has all integers
-  const double seed = NumberOf("data_seed", text);
-  if (!(seed >= 0 && seed <= kMost && seed == static_cast<double>(static_cast<uint64_t>(seed)))) {
-    Fail("data_seed", text, "an integer from 0");
-  }
-  options->seed = static_cast<uint64_t>(seed);
+  const char* const end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, options->seed);
+  if (error != std::errc() || parsed != end) Fail("data_seed", text, "an integer from 0");
+}
+
+bool IsSynth(std::string_view reader, const Measurement& /*measurement*/) {
+  return reader == "synth:";
+}
+bool IsText(std::string_view reader, const Measurement& /*measurement*/) { return reader == "csv"; }
+
+std::vector<SourceOption> MakeOptions() {
+  using Options = SourceOptions;
+  return {
+      Option<"noise", &Options::noise>(
+          {.help = "relative noise of a synth: source",
+           .range = {"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }},
+           .of = "--noise is of synth: sources",
+           .applies = IsSynth}),
+      Option<"missing", &Options::missing>(
+          {.help = "share of the measured bins or samples to leave out at random, by --data_seed, "
+                   "to see how a fit does with fewer",
+           .range = {"from 0 up to 1", [](double x) { return x >= 0 && x < 1; }},
+           .changes_values = true}),
+      Option<"corrupt", &Options::corrupt>(
+          {.help = "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., "
+                   "as noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds "
+                   "(docs/robustness.md)",
+           .changes_values = true}),
+      {.name = "tilt",
+       .help = "correct a measurement whose sample leant by so many degrees towards azimuth 0, "
+               "from which the light of a table comes, from -30 to 30; `trilobe info` tells; auto: "
+               "as the highlight of a table shows",
+       .default_value = "0",
+       .changes_values = true,
+       .set = SetTilt,
+       .get =
+           [](const Options& of) {
+             return of.tilt_deg ? TextOf(*of.tilt_deg) : std::string("auto");
+           }},
+      {.name = "cosine",
+       .help = "correct a measurement that has been multiplied by cos theta_i to this power, from "
+               "-2 to 2: 1 where it has a cosine too many, -1 where it has one too few; o:1 where "
+               "that is cos theta_o; `trilobe info` tells",
+       .default_value = "0",
+       .changes_values = true,
+       .set = SetCosine,
+       .get = [](const Options& of) { return TextOf(of.cosine) + ",o:" + TextOf(of.cosine_o); }},
+      Option<"scale", &Options::scale>(
+          {.help = "multiply all values by this: 0.01 for percents, 0.3183 for pi f",
+           .range = {"from 1e-6 to 1e6", [](double x) { return x >= 1e-6 && x <= 1e6; }},
+           .changes_values = true}),
+      {.name = "azimuth",
+       .help = "from_mirror: azimuths phi_o of scattered samples are counted from the mirror "
+               "direction; `trilobe info` tells",
+       .default_value = "from_light",
+       .of = "--azimuth is of scattered samples",
+       .applies = [](std::string_view, const Measurement& measured) { return !measured.table; },
+       .set = SetAzimuth,
+       .get =
+           [](const Options& of) {
+             return std::string(of.azimuth_from_mirror ? "from_mirror" : "from_light");
+           }},
+      {.name = "data_seed",
+       .help = "seed of what is done to the measurement: the noise of synth: sources, --missing "
+               "and --corrupt; with one of its own, --seed alone moves the start on the same data; "
+               "by default as --seed",
+       .default_value = "",
+       .changes_values = true,
+       .set = SetDataSeed,
+       .get = [](const Options& of) { return std::to_string(of.seed); }},
+      Option<"max_angle", &Options::max_angle_deg>(
+          {.help = "leave out bins whose theta_i or theta_o is beyond this, in degrees",
+           .range = {"in degrees above 0, up to 90", [](double x) { return x > 0 && x <= 90; }},
+           .changes_values = true}),
+      Option<"min_theta_d", &Options::min_theta_d_deg>(
+          {.help = "leave out bins whose theta_d, half the angle between the two directions, is "
+                   "below this, in degrees, since a detector there stands in its own light; -1: as "
+                   "far as scattered samples show that it did",
+           .range = {"in degrees from 0 to below 90, or -1 to go by the data",
+                     [](double x) { return x == -1 || (x >= 0 && x < 90); }},
+           .changes_values = true}),
+      Option<"extrapolated", &Options::extrapolated>(
+          {.help = "of an RGL file, also take what its authors did not measure but extrapolated, "
+                   "and what lies beyond its last theta_i; of scattered samples, what seems to be "
+                   "filled in",
+           .of = "--extrapolated is of RGL files and of scattered samples",
+           .applies =
+               [](std::string_view reader, const Measurement& measured) {
+                 return reader == "rgl" || !measured.table;
+               }}),
+      Option<"outliers", &Options::outliers>(
+          {.help = "also take the bins of a table that are much darker or brighter than those "
+                   "around them"}),
+      Option<"dark_noise", &Options::dark_noise>(
+          {.help = "take the readings of a table as they are, though dark noise is more than a "
+                   "tenth of their signal; else they become medians of what surrounds them"}),
+      Option<"radiometry", &Options::radiometry>(
+          {.help = "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
+                   "(docs/file-formats.md)",
+           .of = "--radiometry is of UTIA files",
+           .applies = [](std::string_view reader,
+                         const Measurement&) { return reader == "utia"; }}),
+      Option<"columns", &Options::columns>(
+          {.help = "of a text table, the names of its columns, in the place of a header: "
+                   "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
+                   "wavelength, and - for a column to leave out (docs/file-formats.md)",
+           .of = "--columns is of text tables",
+           .applies = IsText}),
+      Option<"theta_i", &Options::theta_i_deg>(
+          {.help = "of a text table without a column theta_i, the angle of incidence of all its "
+                   "samples, in degrees",
+           .range = {"in degrees from 0 to below 90, or -1 for none",
+                     [](double x) { return x == -1 || (x >= 0 && x < 90); }},
+           .of = "--theta_i is of text tables",
+           .applies = IsText}),
+      Option<"bands", &Options::bands>(
+          {.help = "of spectra, the wavelengths to read, in nm: one, as 550, for all channels; "
+                   "three, as 650,550,450, as r, g and b, the longest as r; or more, to make a "
+                   "colour of; without, all make a colour, and --spectral keeps each "
+                   "(docs/file-formats.md)",
+           .of = "--bands is of spectra",
+           .applies = [](std::string_view, const Measurement& measured) {
+             return measured.bands != 0;
+           }})};
 }
 
 }  // namespace
 
 const std::vector<SourceOption>& AllSourceOptions() {
-  using Options = SourceOptions;
-  static const std::vector<SourceOption> options = {
-      Option<"noise", &Options::noise>(),
-      Option<"missing", &Options::missing>(),
-      Option<"corrupt", &Options::corrupt>(),
-      {"tilt", SetTilt,
-       [](const Options& of) { return of.tilt_deg ? TextOf(*of.tilt_deg) : std::string("auto"); }},
-      {"cosine", SetCosine,
-       [](const Options& of) { return TextOf(of.cosine) + ",o:" + TextOf(of.cosine_o); }},
-      Option<"scale", &Options::scale>(),
-      {"azimuth", SetAzimuth,
-       [](const Options& of) {
-         return std::string(of.azimuth_from_mirror ? "from_mirror" : "from_light");
-       }},
-      {"data_seed", SetDataSeed, [](const Options& of) { return std::to_string(of.seed); }},
-      Option<"max_angle", &Options::max_angle_deg>(),
-      Option<"min_theta_d", &Options::min_theta_d_deg>(),
-      Option<"extrapolated", &Options::extrapolated>(),
-      Option<"outliers", &Options::outliers>(),
-      Option<"dark_noise", &Options::dark_noise>(),
-      Option<"radiometry", &Options::radiometry>(),
-      Option<"columns", &Options::columns>(),
-      Option<"theta_i", &Options::theta_i_deg>(),
-      Option<"bands", &Options::bands>()};
+  static const std::vector<SourceOption> options = MakeOptions();
   return options;
+}
+
+const SourceOption& FindSourceOption(std::string_view name) {
+  return FindNamed("option of a measurement", name, AllSourceOptions());
+}
+
+std::vector<const SourceOption*> GivenOptions(const SourceOptions& options) {
+  std::vector<const SourceOption*> given;
+  for (const SourceOption& option : AllSourceOptions()) {
+    if (option.get(options) != option.get({})) given.push_back(&option);
+  }
+  return given;
+}
+
+void CheckSourceOptions(const SourceOptions& options) {
+  CheckNumThreads(options.num_threads);
+  for (const SourceOption& option : AllSourceOptions()) {
+    if (option.range.holds == nullptr) continue;
+    CheckInRange("--" + option.name, *ToNumber(option.get(options)), option.range);
+  }
+  FindNamed("radiometry", options.radiometry, UtiaRadiometries());
+  ParseCorruptions(options.corrupt);
+  ParseBands(options.bands);
+  const double tilt = options.tilt_deg.value_or(0);
+  CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
+  for (const double exponent : {options.cosine, options.cosine_o}) {
+    CheckNumber("--cosine", exponent, exponent >= -2 && exponent <= 2, "from -2 to 2");
+  }
 }
 
 }  // namespace trilobe

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/formats/source_option.h"
 #include "model/measurement/unmeasured_samples.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
@@ -200,15 +201,16 @@ TEST(SampleSymptoms, CorrectionsGiveTheValuesBack) {
 }
 
 TEST(SampleSymptoms, TheCosineIsGivenByAText) {
+  const SourceOption& cosine = FindSourceOption("cosine");
   SourceOptions options;
-  SetCosine("o:-1", &options);
-  SetCosine("i:0.5", &options);
+  cosine.set("o:-1", &options);
+  cosine.set("i:0.5", &options);
   EXPECT_EQ(options.cosine_o, -1);
   EXPECT_EQ(options.cosine, 0.5);
-  SetCosine("2", &options);
+  cosine.set("2", &options);
   EXPECT_EQ(options.cosine, 2);
   for (const char* const text : {"", "o:", "x:1", "1x"}) {
-    EXPECT_THAT(ErrorOf([&] { SetCosine(text, &options); }), HasSubstr("--cosine=")) << text;
+    EXPECT_THAT(ErrorOf([&] { cosine.set(text, &options); }), HasSubstr("--cosine=")) << text;
   }
 }
 

@@ -64,10 +64,6 @@ struct SynthSource {
 };
 SynthSource SynthSourceOf(std::string_view name);
 
-// Sets `cosine` or `cosine_o` of the options by a text: "1" or "i:1" is cos theta_i, "o:1" is cos
-// theta_o. Throws Error for others.
-void SetCosine(std::string_view text, SourceOptions* options);
-
 // A step of Source::Read: applies SourceOptions::corrupt, then removes `tilt_deg`, `cosine` and
 // `cosine_o`, multiplies by `scale` and turns azimuths.
 void CorruptBy(const SourceOptions& options, Measurement* measurement);
