@@ -160,7 +160,7 @@ class TemporaryFile {
   std::string path_;
 };
 
-// Where `path` leads if it is a symbolic link, so that the link survives. Anything but a regular
+// The target of `path` if it is a symbolic link, so that the link survives. Anything but a regular
 // file is refused: renaming over /dev/null would replace the device.
 std::string ResolveTarget(const std::string& path) {
   std::error_code error;

@@ -34,7 +34,8 @@ struct BeyondData {
   double share = 0;  // unmeasured fraction of the bins above the surface
   // Largest rho cos theta, theta the steeper angle, outside and within the measured directions.
   double largest = 0, largest_within = 0;
-  // Of the whole sphere. Unmeasured bins have the authors' values or else the nearest valid ones.
+  // PSNR over the whole sphere. Unmeasured bins take the authors' values or else the nearest valid
+  // ones.
   double psnr_db = 0;
 };
 

@@ -29,7 +29,7 @@ struct BinCounts {
 };
 BinCounts CountBins(const BrdfTable& table);
 
-// "12 of 20 bins valid".
+// Text such as "12 of 20 bins valid", with `whole` for "bins".
 std::string ValidText(const BinCounts& counts, const std::string& whole);
 
 // Valid fraction of the bins above the surface, by cells of 1 x 1 degree of (theta_i, theta_o).

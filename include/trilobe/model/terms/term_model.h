@@ -18,7 +18,7 @@
 // where s are the strengths of term t and each R is what the term reads of a table. Isotropic.
 namespace trilobe {
 
-// Where a table T is read, and what is made of it.
+// The angle at which a table T is read, and the formula that is applied to the value.
 enum class Site {
   kHalf,        // T(theta_h), by the stretch of the read
   kDifference,  // T(theta_d)
