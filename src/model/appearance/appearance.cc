@@ -152,7 +152,7 @@ BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
   return data;
 }
 
-// Of a picture with so many pixels in a row.
+// Whether a pixel is beyond kGrazingAngleDegrees on a sphere `size` pixels wide.
 bool AtRim(size_t pixel, int size) {
   const auto place = [size](size_t k) { return (static_cast<double>(k) + 0.5) / size * 2 - 1; };
   return std::hypot(place(pixel % size), place(pixel / size)) >

@@ -96,7 +96,7 @@ std::string HowVisible(Visibility visibility) {
   return "";
 }
 
-// Of what was compared.
+// Words on what was compared.
 std::string SeenWords(const Verdict& verdict) {
   const std::string place = Where(verdict.place), what = What(verdict.fault);
   std::string words = HowVisible(verdict.visibility);
@@ -105,7 +105,7 @@ std::string SeenWords(const Verdict& verdict) {
   return words + (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);
 }
 
-// "", or what is expected of all directions.
+// Words on what is expected of all directions, or "".
 std::string WholeWords(const std::optional<WholeSphere>& whole) {
   if (!whole) return "";
   char text[80];

@@ -248,7 +248,7 @@ class PlaneScan {
 
   void Add(double theta, double value) { values_.emplace_back(theta, value); }
 
-  // Where both sides were scanned; else 0.
+  // A lower estimate of the albedo if both sides were scanned; else 0.
   double Albedo() {
     constexpr size_t kFewestSamples = 8;
     std::ranges::sort(values_);

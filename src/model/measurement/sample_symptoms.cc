@@ -406,10 +406,10 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
     told.push_back(TellReflected(some));
     told.push_back(TellLargest(scattered.samples));
     told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
-    // Where directions lack a sign, no other sentence about directions is right.
+    // If directions lack a sign, no other sentence about directions is right.
     if (!scattered.anisotropic && told.back().empty()) {
       told.push_back(TellHighlight(some));
-      // Nor where the highlight is out of place.
+      // The same holds if the highlight is out of place.
       if (told.back().empty()) {
         told.push_back(TellCosine(some));
         told.push_back(TellElevation(some));

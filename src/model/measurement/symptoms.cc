@@ -118,7 +118,8 @@ NoiseSymptom NoiseOf(const BrdfTable& table) {
   }
   constexpr size_t kFewest = 1000;
   if (differences.size() < kFewest) return {};
-  // Of normal numbers, 0.6745 times the standard deviation, here of 1 + 9 + 9 + 1 values.
+  // The median of absolute normal numbers is 0.6745 times their standard deviation; a difference
+  // has the variance of 1 + 9 + 9 + 1 values.
   return {.relative = Quantile(&differences, 0.5) / (0.6745 * std::sqrt(20.0))};
 }
 

@@ -30,7 +30,7 @@ class SpectralColor {
   static SpectralColor OfBands(std::span<const double> wavelengths, const std::string& source);
 
   const std::vector<double>& wavelengths() const { return wavelengths_; }
-  // What a unit of each wavelength adds to the colour; also below 0. [wavelengths]
+  // Contribution of a unit of each wavelength to the colour; may be below 0. [wavelengths]
   const std::vector<Rgb>& weights() const { return weights_; }
 
   // spectrum: [wavelengths]. Channels are below 0 for colours outside the gamut of sRGB.
