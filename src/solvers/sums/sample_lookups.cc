@@ -38,7 +38,7 @@ void ReadTables(const ReadJob& job) {
   }
 }
 
-// What a lobe has to do with samples of one channel.
+// Inputs and outputs of one lobe for samples of one channel.
 struct LobeJob {
   int size;
   double s;
