@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kStream = "#BEGIN_STREAM";
 
-// --- What the numbers of a sample are ------------------------------------------------------------
+// --- Inputs of a sample --------------------------------------------------------------------------
 
 // The first numbers of a sample: what they are called, whether they tell azimuths apart, and the
 // directions of the light (L) and of the view (V) that they stand for. Angles in radians.

@@ -23,8 +23,8 @@ std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, cons
 // How many entries there are without a last one that repeats the first a whole turn later.
 size_t Distinct(const std::vector<double>& degrees);
 
-// Where x stands among ascending nodes: `t` of the way from `lower` to the next; at an end beyond
-// it, and at a single node.
+// Position of x among ascending nodes: `t` of the way from `lower` to the next; at the end beyond
+// an end, and at the node if there is only one.
 struct BetweenNodes {
   size_t lower = 0;
   double t = 0;

@@ -158,7 +158,7 @@ std::string AdviceOnBands(const std::vector<TableColumn>& columns) {
          ColumnsFlag(columns, first - columns.begin(), "645nm");
 }
 
-// What values are by their names, if that is no BRDF in 1/sr.
+// Advice if the names of columns say that values are not a BRDF in 1/sr, else "".
 std::string AdviceOnScale(const std::vector<TableColumn>& columns) {
   for (size_t k = 0; k < columns.size(); ++k) {
     const TableColumn& column = columns[k];

@@ -26,7 +26,7 @@ const KlemsBasis& Full() { return KlemsBases()[0]; }
 
 double SquaredSine(double degrees) { return std::pow(std::sin(DegreesToRadians(degrees)), 2); }
 
-// Of a patch.
+// Projected solid angle of a patch.
 double ProjectedSolidAngle(const KlemsRing& ring) {
   return kPi * (SquaredSine(ring.end) - SquaredSine(ring.begin)) / ring.patches;
 }
@@ -39,7 +39,7 @@ size_t RingOf(double theta) {
   return ring - rings.begin();
 }
 
-// The light that goes into a part of the hemisphere, over that which comes.
+// Light that goes into a part of the hemisphere, over the incident light.
 struct Part {
   Rgb light{};       // integral of f cos theta_o d omega_o
   double angle = 0;  // integral of cos theta_o d omega_o, by the same rule
@@ -138,7 +138,7 @@ class LightRule {
   Parts& parts_;
 };
 
-// Of light that comes evenly, by projected solid angle, from opposite a patch.
+// Reflected light for incidence that is even, by projected solid angle, from opposite a patch.
 Parts LightOf(const PairBrdf& brdf, const KlemsRing& ring, double phi, uint64_t seed) {
   Parts parts(Full().rings.size() * kSectors);
   const double from = SquaredSine(ring.begin), to = SquaredSine(ring.end);

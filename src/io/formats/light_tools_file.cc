@@ -23,7 +23,7 @@ struct LightToolsHeader {
   bool tristimulus = false;
 };
 
-// What the lines before the values of a block say.
+// Header and values of a block.
 struct LightToolsBlock {
   double incidence = 0, plane = 0;  // [degrees]
   bool is_front = true, is_reflection = true;

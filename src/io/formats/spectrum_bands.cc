@@ -48,7 +48,7 @@ size_t Nearest(std::span<const double> wavelengths, double chosen, const std::st
   return nearest - wavelengths.begin();
 }
 
-// What to type where all wavelengths make no colour.
+// Advice on flags if all wavelengths make no colour.
 std::string Advice(std::span<const double> wavelengths) {
   std::vector<double> from_longest(wavelengths.begin(), wavelengths.end());
   std::ranges::sort(from_longest, std::greater<>());

@@ -177,7 +177,7 @@ double LightOf(const SpeosTable& table, bool is_bsdf, const SpeosText& text) {
   return 2 * kPi * light;
 }
 
-// What values are multiplied by, for `reflectance`; 0 of a black table.
+// Factor by which values are multiplied, for `reflectance`; 0 for a black table.
 double ScaleOf(const SpeosTable& table, double reflectance, bool is_bsdf, const SpeosText& text) {
   const double light = LightOf(table, is_bsdf, text);
   return light > 0 ? reflectance / light : 0;
@@ -301,8 +301,8 @@ SpeosSpectrum ReadSpeosSpectrum(SpeosText* text) {
   return spectrum;
 }
 
-// What values of all tables are multiplied by for a reflectance of 1: that of the rotation nearest
-// to the spectrum's phi, between the incidences about its theta.
+// Factor for the values of all tables, for a reflectance of 1: that of the rotation nearest to the
+// spectrum's phi, between the incidences about its theta.
 double ScaleAt(const SpeosSpectrum& spectrum, const std::vector<Rotation>& rotations,
                const std::vector<SpeosTable>& tables, bool is_bsdf, const SpeosText& text) {
   size_t first = 0, at = 0, nearest = 0;  // tables

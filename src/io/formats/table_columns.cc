@@ -85,7 +85,7 @@ constexpr std::string_view kFromMirror[] = {"fromspec",   "tospec",    "offspec"
                                             "deltaspec",  "minusspec", "aspecular",
                                             "frommirror", "tomirror",  "sthetaspec"};
 
-// Of theta or phi of what the rest of the name says.
+// Role of a theta or phi by the rest of its name.
 std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
   if (side.empty()) return unsaid;
   if (IsOneOf(side, kIncident)) return incident;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMaxRank = 4;
 constexpr std::string_view kBetween = " \t\r\n,";
 
-// Of the unit cube.
+// A cell of the unit cube.
 struct Cell {
   std::array<double, kMaxRank> begin{};
   double size = 1;

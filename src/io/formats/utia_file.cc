@@ -34,7 +34,7 @@ double AsDupuy(double stored, double /*cos_theta_i*/) {
 
 // --- The order of the numbers -------------------------------------------------------------------
 
-// Where a file might have the value of a pair of directions.
+// An order in which a file might store the values of pairs of directions.
 struct Order {
   const HemisphereGrid& grid;
   bool rows_by_phi = false, columns_by_phi = false;  // index 6 b + a in the place of 48 a + b

@@ -35,7 +35,7 @@ class Bits {
   void Add(uint32_t number, int count) {
     for (int k = 0; k < count; ++k) AddBit(number >> k & 1);
   }
-  // As many ones as the number is above its low bits, a zero, and these.
+  // Rice code: number >> low ones, a zero, and the low bits.
   void AddRice(uint32_t number, int low) {
     for (uint32_t k = number >> low; k > 0; --k) AddBit(1);
     AddBit(0);

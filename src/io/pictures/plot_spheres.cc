@@ -350,7 +350,7 @@ AppearanceOptions Enlarge(AppearanceOptions options, double times) {
   return options;
 }
 
-// Of the sphere that fits are judged by.
+// Text on the sphere that fits are judged by.
 std::string MeasureOf(const AppearanceOptions& options) {
   const std::string size = std::to_string(options.size);
   return size + " x " + size + " pixels under " + std::to_string(options.lights) +
