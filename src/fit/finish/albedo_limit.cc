@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kPassesBeyond = 10;
 
-// Where albedos are computed [rad]: denser where they rise steeply.
+// Angles at which albedos are computed [rad]: denser where they rise steeply.
 std::vector<double> Angles() {
   std::vector<double> angles;
   for (int degrees = 0; degrees < 60; degrees += 6) angles.push_back(DegreesToRadians(degrees));
@@ -40,7 +40,7 @@ std::vector<double> Angles() {
   return angles;
 }
 
-// At all nodes of G, of which a single one may glow, and halfway between those beyond 60 degrees.
+// All nodes of G, since a single one may glow, and the middles between those beyond 60 degrees.
 std::vector<double> NodesOf(const Axis& g_axis) {
   constexpr double kSteep = DegreesToRadians(60), kLast = DegreesToRadians(89.5);
   std::vector<double> angles;
@@ -116,7 +116,7 @@ MeasuredAlbedo MeasuredAlbedoOf(const BrdfSamples& samples) {
   return albedo;
 }
 
-// What a model fitted to scattered samples reflects up to the largest angle of these.
+// Albedo of a model fitted to scattered samples, over wo up to the largest angle of these.
 MeasuredAlbedo ModelledAlbedo(const FactorModel& model, double max_theta, int num_threads) {
   constexpr int kLookedAt = 8;
   const PreparedModel<double> prepared(model);

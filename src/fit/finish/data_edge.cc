@@ -94,7 +94,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
     if (!stepper.Step()) continue;
     if (refit == TieRefit::kUntilBack && stepper.E() <= enough) break;
     const double decrease = before - stepper.E();
-    // As much again in each step that is left would not bring E back.
+    // The same decrease in each step that is left would not bring E back.
     const bool hopeless = stepper.E() - (kSteps - 1 - step) * decrease > enough;
     if (hopeless || decrease < kSmallDecrease * before) break;
   }
@@ -109,7 +109,7 @@ bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model, const 
                           TieRefit refit) {
   CheckSameSpec(model->spec(), objective.spec());
   CheckParameters(*model);
-  // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the
+  // If tying raises E too much, less is tried: at least nodes of G beyond the data, which only the
   // spline reads.
   const auto tie = [&](Rule rule, std::initializer_list<Factor> factors) {
     return Tie(rule, factors, objective, stop, refit, model);

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// What lowers G of isotropic and of anisotropic models that reflect too much light.
+// Most passes that lower G of a model that reflects too much light, isotropic or anisotropic.
 constexpr int kPassesOfG = 40;
 
 // How much lower G is to be where an albedo exceeds its limit by more than a thousandth: by the

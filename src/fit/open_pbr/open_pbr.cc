@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kCosines = 16;  // of albedos: (k + 1/2) / 16
 
-// Of unpolarised light at an interface, from outside.
+// Fresnel reflectance of an interface for unpolarised light from outside.
 double DielectricFresnel(double cosine, double ior) {
   const double sin2 = 1 - cosine * cosine;
   const double below = std::sqrt(std::max(ior * ior - sin2, 0.0));

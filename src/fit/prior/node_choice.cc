@@ -126,7 +126,7 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
     tried.error = judged.Value(*model) / judged.MeasuredEnergy();
     tried.seconds = of_this.Seconds();
     const int last = static_cast<int>(choice.tried.size()) - 1;
-    // What was stopped half-way says nothing against the one before.
+    // An interrupted fit says nothing against the candidate before.
     if (last > 0 && (summary.stop_reason == StopReason::kInterrupted ||
                      !(tried.error < kWorthwhile * choice.tried[choice.chosen].error))) {
       break;

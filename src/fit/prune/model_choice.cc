@@ -31,13 +31,13 @@
 namespace trilobe {
 namespace {
 
-// What nobody sees of a picture [dB].
+// Loss of PSNR that nobody sees in a picture [dB].
 constexpr double kNotSeen = 0.2;
 
-// A stretch that lowers E by less than this fraction is none.
+// Least relative decrease of E for which a stretch is kept.
 constexpr double kWorthwhile = 0.05;
 
-// What thinning cannot go below: a node a table, besides d, s and exponents.
+// Fewest parameters that thinning can leave: a node per table, besides d, s and exponents.
 int LeastStored(const ModelSpec& spec) {
   TableLayout layout = TableLayout::Full(spec);
   for (const Factor factor : kFactors) {
@@ -50,8 +50,8 @@ Objective Thinned(const Objective& objective, const SampleThinning& thinning) {
   return ThinnedObjective(objective, objective.spec().num_parameters(), thinning);
 }
 
-// Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
-// read may be anything.
+// Continues a fit to few samples by joint steps on more: an entry that the few hardly read may be
+// anything.
 FactorModel ContinueFit(const Objective& objective, const FactorModel& start, const StopCheck& stop,
                         const Reduction* reduction = nullptr) {
   constexpr int kSteps = 2;
@@ -233,7 +233,7 @@ class ModelSearch {
     return true;
   }
 
-  // What the forms go on from: the fit itself, stretched, and weighed by channel.
+  // Fits the bases of the forms: the fit itself, stretched, and weighed by channel.
   bool FitBases() {
     bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
     return FitStretchedBase() && FitBasesByChannel();
@@ -272,7 +272,7 @@ class ModelSearch {
     return true;
   }
 
-  // Where pictures show what weights by the mean of the channels hide.
+  // Fits bases weighed by channel if weights by the mean of the channels hide what pictures show.
   bool FitBasesByChannel() {
     if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
       return true;
@@ -301,9 +301,9 @@ class ModelSearch {
     return true;
   }
 
-  // Of the best base, and any within 2 dB of it, the form that shares neither F nor D; then the
-  // best of all these with a lobe more. The more nodes there are to choose from, the better those
-  // that thinning leaves.
+  // From the best base, and any within 2 dB of it, fits the form that shares neither F nor D; then
+  // the best of all these with one more lobe. The more nodes there are to choose from, the better
+  // those that thinning leaves.
   bool FitForms() {
     constexpr double kNearly = 2;  // [dB]
     const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;

@@ -159,7 +159,7 @@ class AnisotropicPruning {
     return pruning_.Decide(what, std::move(next), within && !stopped(), why);
   }
 
-  // As long as it keeps within the budget.
+  // Applies each reduction as long as the budget is kept.
   void ReduceWhatThereIs() {
     for (const Reduce& reduce : Reductions(options_)) {
       while (!stopped()) {
@@ -169,7 +169,7 @@ class AnisotropicPruning {
     }
   }
 
-  // Until so few parameters are left, each time what raises E least for what it saves.
+  // Reduces to this many parameters, each time by what raises E least per parameter saved.
   void ReduceTo(int max_parameters) {
     while (!stopped() && state().num_parameters() > max_parameters) {
       std::optional<std::pair<std::string, PruneState>> best;
@@ -201,7 +201,7 @@ class AnisotropicPruning {
   }
 
  private:
-  // Where E with the prior is to go for that of the measured ones to go where it may.
+  // Target of E with the prior at which E of the measured samples reaches its own.
   double Wanted() const {
     if (pruning_.by_parameters()) return 0;  // nothing can be given up: a few steps tell enough
     if (pruning_.IsExact(pruning_.E_base())) return pruning_.search_limit();

@@ -145,7 +145,8 @@ std::vector<std::string> MethodsOf(std::span<const StudyRun> runs);
 // "stopped by --max_seconds", "converged"; of a StopReasonName.
 std::string EndingWords(const std::string& reason);
 
-// "10 of 10 stopped by --max_iterations", "3 of 5 converged, 2 of 5 stopped by --max_seconds".
+// Text such as "10 of 10 stopped by --max_iterations", or "3 of 5 converged, 2 of 5 stopped by
+// --max_seconds".
 std::string EndingsText(const MethodSummary& of);
 
 // Says in sentences what the runs show: who found the lowest E, how often, how soon; who was
