@@ -50,7 +50,7 @@ DEFINE_bool(picture, false,
 namespace trilobe {
 namespace {
 
-// What can be known to fail is told before a fit, which takes seconds.
+// Reports foreseeable errors before a fit, which takes seconds.
 void CheckOut(const std::string& source) {
   Inputs({source}).CheckOutput(FLAGS_out);
   const std::filesystem::path folder = std::filesystem::path(FLAGS_out).parent_path();

@@ -28,12 +28,12 @@
 namespace trilobe {
 namespace {
 
-// Of what was measured; empty if nobody asked for it.
+// Picture of the measurement; empty without --out.
 std::string PicturePath() { return FLAGS_out.empty() ? "" : FLAGS_out + "/measured.png"; }
 
 using Json = nlohmann::ordered_json;
 
-// What a measurement says of single directions, and not only at bins: 0 where it was not measured.
+// BRDF of a measurement at single directions, and not only at bins: 0 where it was not measured.
 class MeasuredBrdf {
  public:
   explicit MeasuredBrdf(const Measurement& measurement) : measurement_(measurement) {
@@ -182,7 +182,7 @@ ValueRange RangeOf(const std::vector<Rgb>& values) {
   return range;
 }
 
-// As of one wavelength.
+// Whether all channels are equal, as for one wavelength.
 bool OneValueForAllChannels(const BrdfSamples& samples) {
   return std::ranges::all_of(samples.rho,
                              [](const Rgb& rho) { return rho[0] == rho[1] && rho[1] == rho[2]; });

@@ -16,7 +16,7 @@ DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above
 namespace trilobe {
 namespace {
 
-// Where gflags keeps a flag.
+// Memory in which gflags keeps a flag.
 struct FlagStorage {
   OptionValue value, default_value;
 };
