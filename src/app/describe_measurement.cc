@@ -149,7 +149,7 @@ void DescribeTable(const Measurement& measurement) {
   for (const std::string& note : measurement.notes) PrintLine("note", note);
 }
 
-// Which values an angle has among the samples.
+// Values of an angle among the samples.
 struct AngleRange {
   double min_deg = 0, max_deg = 0;
   int values = 0;  // that differ by more than 1e-6 rad

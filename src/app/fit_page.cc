@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// That a page holds, some 30 kB each; one of more fits compares their pictures alone.
+// Most models that a page holds, some 30 kB each; a page of more fits compares pictures alone.
 constexpr size_t kMostModels = 200;
 
 // Tables need no more digits for a picture.

@@ -118,7 +118,7 @@ std::string FlagHelp(const std::string& flag) {
 
 int ThreadsFromFlags() {
   if (FLAGS_threads < 0) throw Error("--threads is negative; give 0 for all cores");
-  // Those that this process may use.
+  // Cores that this process may use.
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (FLAGS_threads == 0) return cores;
   static bool told = false;

@@ -62,7 +62,7 @@ struct CommandLine {
   bool version = false;  // --version
 };
 
-// With a value, too, which gflags would take for the list of all flags of all libraries.
+// Also recognises --help=VALUE, which gflags would take for the list of all flags of all libraries.
 bool IsHelp(std::string_view word) {
   const std::string_view name = word.substr(0, word.find('='));
   return word == "-h" || name == "--help" || name == "-help";
@@ -190,7 +190,7 @@ void PrintHelp() {
 }
 
 void PrintHelp(const Command& command) {
-  // Before anything is printed: it may throw.
+  // Computed before anything is printed, since it may throw.
   const std::string particular =
       command.particular_help != nullptr ? "\n" + command.particular_help() : "";
   std::cout << "usage: trilobe " << command.name << " " << command.arguments
@@ -218,7 +218,7 @@ void CheckFlags(const CommandLine& line, const Command& command) {
       return std::ranges::find(names, flag.name) != names.end();
     };
     if (is_in(command.flags) || is_in(command.particular_flags)) continue;
-    // Those of gflags and glog, as --version and --v, are everybody's.
+    // Flags of gflags and glog, such as --version and --v, are valid for all commands.
     if (flag.known &&
         gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str()).filename.find("src/app/") ==
             std::string::npos) {

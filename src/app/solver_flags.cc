@@ -21,7 +21,7 @@ struct FlagStorage {
   OptionValue value, default_value;
 };
 
-// By the names of the flags; addresses stay.
+// Storage by the names of the flags; addresses stay.
 std::map<std::string, FlagStorage>& Storage() {
   static std::map<std::string, FlagStorage> storage;
   return storage;

@@ -25,7 +25,8 @@
 namespace trilobe {
 namespace {
 
-// From a fit, so that few passes and steps are enough. Returns the objective of the last pass.
+// Starts from a fit, so that few passes and steps are enough. Returns the objective of the last
+// pass.
 Objective FitRobustly(const Objective& objective, const FinishOptions& options,
                       FactorModel* model) {
   constexpr int kPasses = 2, kSteps = 10;
@@ -42,8 +43,8 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
   return reweighted;
 }
 
-// How much a model looks like the measurement on a sphere [dB]: of what was measured and, where
-// some was not, of all directions. The measured spheres are rendered when they are first asked for.
+// PSNR of a model's sphere against the measurement's [dB]: over what was measured and, if some was
+// not, over all directions. The measured spheres are rendered at the first use.
 class SphereScores {
  public:
   SphereScores(const BrdfTable& measured, const AppearanceOptions& options)
@@ -129,7 +130,7 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereSc
     }
     if (!no_harm) no_harm.emplace(fit->objective, model, scores);
     if (!(*no_harm)(matched->model)) continue;
-    // Only tables in full are smoothed after this.
+    // Only full tables are smoothed after this.
     if (thinned && HasRings(matched->model, solved.num_threads())) continue;
     fit->matched = {.error_before = matched->error_before, .error_after = matched->error_after};
     fit->model = std::move(matched->model);
@@ -263,7 +264,7 @@ FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorMode
   Objective solved = objective;
   const std::vector<double> coverage = objective.coverage();
   const bool has_prior = objective.has_prior();
-  // Before CorrectOvershoot adds more to `solved`.
+  // Must precede CorrectOvershoot, which adds more to `solved`.
   if (has_prior && options.max_parameters == 0) objective = Objective(objective.data());
   FinishedFit fit{.objective = objective, .model = std::move(model)};
   if (options.robust > 0) {

@@ -133,8 +133,8 @@ class Fitting {
                                 : FindInitialModel(options_.init).make(objective, options_.seed);
   }
 
-  // Which forms there are besides the spec, which is made to keep to the budget. Of isotropic ones
-  // they are made of the fit, when that is finished (ChooseModel).
+  // Sets the forms to choose from besides the spec, which is made to keep to the budget. Isotropic
+  // ones are made from the finished fit (ChooseModel).
   void MakeReadyToChoose(int num_samples, ModelSpec* spec) {
     constexpr int kOfTables = 822;  // of any size
     const int budget =

@@ -95,7 +95,7 @@ constexpr std::string_view kTemporaryMark = ".trilobe-tmp-";
 constexpr size_t kTemporaryDigits = 16;
 
 std::string TemporaryName(const std::filesystem::path& target) {
-  // So that the whole name does not exceed the limit of file names.
+  // Cut so that the whole name does not exceed the limit of file names.
   const std::string name = target.filename().string().substr(0, 200);
   return target.parent_path() / ("." + name + std::string(kTemporaryMark) + RandomDigits());
 }

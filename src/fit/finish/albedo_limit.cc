@@ -137,9 +137,9 @@ MeasuredAlbedo ModelledAlbedo(const FactorModel& model, double max_theta, int nu
   return albedo;
 }
 
-// How the directional albedo goes on beyond the data: as its logarithm does over the last cells
-// that are measured nearly as well as any, and levels off as tables do (beyond_data.h). A highlight
-// is cut in the last of them.
+// Continuation of the directional albedo beyond the data: its logarithm goes on as over the last
+// cells that are measured nearly as well as any, and levels off as tables do (beyond_data.h). A
+// highlight is cut in the last of them.
 class ContinuedAlbedo {
  public:
   // `beyond`: the angle from which on it is asked for [rad].
@@ -190,7 +190,7 @@ double LastWellCovered(std::span<const double> coverage, const FactorModel& mode
   return last;
 }
 
-// How much lower G is to be at a stored node, from what the albedo at each angle asks for.
+// Factor of G at a stored node, from the factors that the albedo at each angle asks for.
 using FactorAtNode =
     std::function<double(std::span<const int> nodes, size_t i, const std::vector<double>& factors)>;
 

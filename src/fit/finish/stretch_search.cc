@@ -249,7 +249,8 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
       rejected = 0;
       if (small) break;
     } else {
-      // From where they are, joint steps lower E in any case once the exponents hardly move.
+      // With the parameters left as they are, joint steps lower E in any case once the exponents
+      // hardly move.
       if (follow == 0) lambda *= 8;
       follow = 0;
       ++rejected;

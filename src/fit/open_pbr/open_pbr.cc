@@ -118,7 +118,7 @@ double OpenPbrBrdf::At(const std::vector<double>& table, double cosine) {
   return table[k] + (x - k) * (table[k + 1] - table[k]);
 }
 
-// By half vectors drawn from those that are visible (Heitz 2018), whose weights are
+// Integrates over half vectors drawn from the visible ones (Heitz 2018), whose weights are
 // F G2 / G1, the mean over both axes.
 void OpenPbrBrdf::Ggx::SetTables() {
   constexpr int kAcross = 8, kAround = 6;

@@ -31,7 +31,7 @@ uint64_t Mix(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// By the vector to 1e-6, in which all azimuths of the normal are one direction.
+// Hash of the vector, rounded to 1e-6, in which all azimuths of the normal are one direction.
 uint64_t HashOf(const Direction& direction, uint64_t seed) {
   uint64_t hash = seed;
   for (const double x : direction) {

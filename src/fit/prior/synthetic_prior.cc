@@ -162,11 +162,11 @@ FactorModel FitPrior(const PriorKind& kind, size_t number, const Objective& data
   return model;
 }
 
-// With two lobes, if they are worth it.
+// Replaces the model by one with two lobes, if they are worth it.
 void TryTwoLobes(PriorKind* kind, const Objective& data, const StopCheck& stop,
                  FactorModel* model) {
   for (ModelSpec& spec : kind->specs) spec.lobes = 2;
-  // With few samples it would follow the noise.
+  // With few samples the second lobe would follow the noise.
   if (data.samples().size() < kSamplesPerParameter * kind->specs.front().num_parameters()) return;
   FactorModel two = FitPrior(*kind, 0, data, stop);
   const auto E = [&](const FactorModel& fitted) {

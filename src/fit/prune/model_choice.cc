@@ -192,7 +192,7 @@ class ModelSearch {
     pruned.model = ContinueFit(refitted, pruned.model, options_.stop, &stored);
     // Nodes that were chosen by E, with the values of the form.
     if (!of_fit && HasRings(pruned.model, objective_.num_threads())) pruned.model = model;
-    // By what was measured, without the prior.
+    // Scale by what was measured, without the prior.
     const Objective measured = some_.ObjectiveFor(pruned.model.spec(), weighting);
     SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
     ExpandStored(pruned.layout, &pruned.model);
@@ -286,7 +286,7 @@ class ModelSearch {
       if (!Fit(form)) return false;
       bases_.push_back(forms_.back());
     }
-    // From starts of its own, since it ends in another minimum.
+    // Starts of its own, since it ends in another minimum.
     ModelForm form{"weighed by channel anew",
                    FitBySolver("auto", few_with_prior_.ObjectiveFor(fitted_.spec(), by_channel),
                                fitted_, options_.stop),

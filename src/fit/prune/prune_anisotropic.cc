@@ -49,7 +49,7 @@ std::string NodesText(const Axis& axis) {
   return std::to_string(axis.theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes";
 }
 
-// With D or G on another axis.
+// The model with D or G on another axis.
 Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
   ModelSpec spec = model.spec();
   const std::string what = std::string(FactorName(factor)) + " on " + NodesText(axis) +
@@ -58,8 +58,8 @@ Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
   return {what, {WithAxes(model, spec)}};
 }
 
-// With this share of the phi of D or G: an even number, as most materials look the same turned by
-// 180 degrees.
+// The model with this share of the phi of D or G: an even number, as most materials look the same
+// turned by 180 degrees.
 std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, double share) {
   const Axis& axis = model.spec().axis(factor);
   const int fewer = std::max(2 * static_cast<int>(share * axis.phi_nodes / 2), kFewestPhi);
@@ -67,7 +67,7 @@ std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, d
   return OnAxis(model, factor, Axis::Polar(axis.theta, fewer));
 }
 
-// Without every sixth theta of D or G, ends apart, and those towards the horizon.
+// The model without every sixth theta of D or G, ends apart, and those towards the horizon.
 std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor) {
   const Axis& all = model.spec().axis(factor);
   const Axis axis = all.WithoutHorizon();

@@ -110,7 +110,7 @@ class Pruning {
   void Withdraw(size_t begin, size_t end, const std::string& why);
 
  private:
-  // After a step to a better state than what was settled for, which may even meet the budget.
+  // Settles for the state after a step to a better one, which may even meet the budget.
   void SettleForBetter();
 
   const Objective &data_, &objective_;

@@ -28,8 +28,7 @@
 namespace trilobe {
 namespace {
 
-// With a budget of seconds: the share of it after which a fit stops. The rest is for leaving out
-// what is free.
+// Share of a budget of seconds after which a fit stops. The rest is for leaving out what is free.
 constexpr double kFitShare = 0.8;
 
 // Lobes where a budget asks for less error than that of the full fit.

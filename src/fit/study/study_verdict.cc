@@ -125,7 +125,8 @@ std::string LimitSentence(const std::vector<MethodSummary>& methods) {
          ".";
 }
 
-// "after 2.1 s" on one problem; of several the geometric mean, "after 4.4 s on 2 of 3 problems".
+// Text such as "after 2.1 s" for one problem; for several the geometric mean, "after 4.4 s on 2 of
+// 3 problems".
 std::string TimesText(const Times& times) {
   const std::string where = times.of == 1 || times.reached == times.of
                                 ? ""

@@ -121,7 +121,8 @@ void CheckAltaHeader(const TextLines& lines, const std::map<std::string, std::st
   }
 }
 
-// Up to the first sample, where `lines` is then, or to the line #BEGIN_STREAM of a binary file.
+// Reads up to the first sample, where `lines` is then, or to the line #BEGIN_STREAM of a binary
+// file.
 AltaHeader ReadAltaHeader(TextLines* lines) {
   AltaHeader header;
   std::map<std::string, std::string> seen;

@@ -20,7 +20,7 @@ std::vector<double> ReadAngleList(const AngleList& list, std::string_view count,
 // The numbers of the line where `lines` is. Throws Error unless there are `count` of them.
 std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, const char* what);
 
-// How many entries there are without a last one that repeats the first a whole turn later.
+// Number of entries without a last one that repeats the first a whole turn later.
 size_t Distinct(const std::vector<double>& degrees);
 
 // Position of x among ascending nodes: `t` of the way from `lower` to the next; at the end beyond

@@ -214,7 +214,7 @@ std::string AdviceOnCoordinates(const std::vector<TableColumn>& columns) {
     if (column.role != ColumnRole::kOther) continue;
     const std::string key = KeyOf(column);
     for (const Coordinate& coordinate : kCoordinates) {
-      // Before "beta": what is between bars is a distance.
+      // Checked before "beta": the distance between bars, |beta - beta0|.
       const bool is_distance = key.find("betabeta") != std::string::npos || key.starts_with("bb0");
       const bool fits = coordinate.begin == "bb0"
                             ? is_distance

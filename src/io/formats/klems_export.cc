@@ -19,7 +19,7 @@ namespace {
 
 // Azimuths of patches of the full basis begin and end at multiples of a turn over so many.
 constexpr int kSectors = 480;
-// How many directions of light a patch has, and how many half vectors each of these.
+// Numbers of directions of light per patch, and of half vectors per direction.
 constexpr int kThetas = 4, kGrazingThetas = 10, kPhis = 4, kRays = 48, kNodes = 96;
 
 const KlemsBasis& Full() { return KlemsBases()[0]; }
@@ -186,7 +186,7 @@ std::vector<Rgb> KlemsMeans(const ExportedBrdf& brdf, int num_threads) {
   }
   const size_t size = columns.size();
   std::vector<Rgb> means(size * size);
-  // Those of an isotropic BRDF are those of the first of a ring, turned.
+  // Columns of an isotropic BRDF are those of the first patch of a ring, turned.
   ParallelFor(static_cast<int>(size), num_threads, [&](int first) {
     const auto& [ring, patch] = columns[first];
     if (!brdf.anisotropic && patch > 0) return;

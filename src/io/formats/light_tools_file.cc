@@ -37,7 +37,7 @@ struct LightToolsBlock {
              " can be read");
 }
 
-// Up to the line DataBegin.
+// Reads up to the line DataBegin.
 LightToolsHeader ReadLightToolsHeader(TextLines* lines) {
   LightToolsHeader header;
   while (lines->Next()) {

@@ -149,7 +149,7 @@ ReflectionBlocks FindReflection(const RadianceXml& xml, const pugi::xml_node& la
   xml.Fail(layer, "it has neither Reflection Front nor Reflection Back, only transmission");
 }
 
-// Those of the colour: X, Y, Z, or one for all channels; and what they are.
+// Blocks of the colour: X, Y, Z, or one for all channels; and their kind in words.
 struct ColorBlocks {
   std::vector<pugi::xml_node> blocks;
   std::string name;

@@ -18,7 +18,7 @@ constexpr int kDigits = 6;
 
 std::string Nm(double wavelength) { return Text(wavelength, kDigits) + " nm"; }
 
-// "405, 532 and 650 nm"; of many, the two nearest to `at`.
+// Text such as "405, 532 and 650 nm"; of many wavelengths, the two nearest to `at`.
 std::string Known(std::span<const double> wavelengths, double at) {
   constexpr size_t kMost = 12;
   std::string text;

@@ -35,7 +35,7 @@ class SpeosText {
     throw Error(source_ + ": line " + std::to_string(at_) + ": " + problem);
   }
 
-  // Up to the end of the line, where there is one.
+  // Reads up to the end of the line, or of the text.
   std::string_view RestOfLine(const char* what) {
     at_ = line_;
     if (rest_.empty()) Fail(std::string("the file ends before ") + what);
@@ -104,7 +104,7 @@ class SpeosText {
 
 // --- Tables --------------------------------------------------------------------------------------
 
-// By the angles of the outgoing direction. The mirror direction has phi = 0.
+// Values by the angles of the outgoing direction. The mirror direction has phi = 0.
 struct SpeosTable {
   std::vector<double> thetas, phis;  // [degrees]
   std::vector<double> values;        // [theta][phi]

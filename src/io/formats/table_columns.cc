@@ -51,7 +51,7 @@ constexpr std::string_view kOutgoing[] = {
     "scattering", "v",        "view",     "viewing",  "viewer",   "e",
     "exit",       "emission", "emergent", "obs",      "observer", "observation",
     "sensor",     "camera",   "det",      "detector", "receiver"};
-// With which no word for an angle need stand.
+// Words that need no word for an angle beside them.
 constexpr std::string_view kIncidentAlone[] = {
     "inc",          "incident",   "incidence", "incoming",       "aoi",           "ti",
     "thi",          "sza",        "einfall",   "einfallswinkel", "einfallwinkel", "dincidence",

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// How a text table is written: what stands between its cells, and where its header is.
+// Layout of a text table: the separator of its cells, and the place of its header.
 struct TableHead {
   TextLines lines;  // at the header or, without one, before the first row
   std::vector<std::string> names = {};

@@ -21,7 +21,7 @@ std::string_view WebText(std::string_view name) {
 
 namespace {
 
-// So that no text ends the element that it stands in: "<" occurs in JSON within strings alone.
+// Keeps texts from ending the element that they stand in: "<" occurs in JSON within strings alone.
 std::string EscapeForScript(std::string_view json) {
   std::string text;
   text.reserve(json.size());

@@ -25,7 +25,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kThetaD[kCurves] = {5, 25, 45, 65, 80};  // degrees; the bins that begin there
 
-// How a bin is drawn: as all are, as one that is hardly seen, as one without measured value.
+// Style of a bin: of most bins, of one that is hardly seen, of one without measured value.
 enum Way : uint8_t { kPlain, kPale, kDotted, kWays };
 constexpr int kColumns = 2 * kWays;  // of a theta_d: the measured value in its way, the fitted one
 
@@ -195,7 +195,7 @@ constexpr Row kRows[] = {
      }},
 };
 
-// Up to kCurves of the grid's thetas, evenly, the largest that was measured among them.
+// At most kCurves of the grid's thetas, evenly, the largest that was measured among them.
 std::vector<double> ThetasOf(const NodeTable& table) {
   const int last = std::min(static_cast<int>(table.max_theta / table.grid.ThetaStep() + 1e-6),
                             table.grid.thetas - 1);

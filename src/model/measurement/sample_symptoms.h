@@ -31,7 +31,7 @@ struct HighlightSymptom {
 };
 HighlightSymptom HighlightOf(const BrdfSamples& samples);
 
-// How much values change with the azimuth near the normal, where azimuths are close to one another,
+// Variation of values with the azimuth near the normal, where azimuths are close to one another,
 // and near the horizon: medians over incidences from 30 to 60 degrees of log(90th / 10th
 // percentile) at theta_o up to 25 and from 65 degrees on, where no mirror direction is. Angles from
 // the horizon in the place of those from the normal exchange the two.

@@ -78,7 +78,7 @@ QuantizationSymptom QuantizationOf(const BrdfTable& table) {
   const std::vector<bool> valid = ValidBins(table);
   const GridCosines cosines(grid);
   std::vector<double> signals;
-  // Not the exchanged ones, which may be equal.
+  // Leaves out exchanged directions, whose values may be equal.
   for (int row = 0; row < grid.theta_h * grid.theta_d; row += 3) {
     for (int bin = row * grid.phi_d; bin < row * grid.phi_d + (grid.phi_d + 1) / 2; ++bin) {
       const double signal = valid[bin] ? table.Value(1, bin) * cosines(bin).i : 0;
@@ -125,7 +125,7 @@ NoiseSymptom NoiseOf(const BrdfTable& table) {
 
 namespace {
 
-// Only the part in the highlight, which is all that FindOwnShadow examines.
+// The shadow of the part in the highlight, which is all that FindOwnShadow examines.
 OwnShadow ShadowOf(const BrdfTable& table) {
   const MerlGrid& grid = table.grid;
   const std::vector<bool> valid = ValidBins(table);

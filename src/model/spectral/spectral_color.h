@@ -9,7 +9,7 @@
 
 namespace trilobe {
 
-// From XYZ to linear sRGB (IEC 61966-2-1).
+// Matrix from XYZ to linear sRGB (IEC 61966-2-1).
 inline constexpr double kToSrgb[kChannels][3] = {{3.2404542, -1.5371385, -0.4985314},
                                                  {-0.9692660, 1.8760108, 0.0415560},
                                                  {0.0556434, -0.2040259, 1.0572252}};

@@ -173,7 +173,7 @@ bool JointStepper::Step() {
     return false;
   }
   const double f = 2 * gain - 1;
-  // Not at once to where the last H was indefinite: the next one is much like it.
+  // Does not return at once to where the last H was indefinite: the next one is much like it.
   lambda_ = std::max(
       {kMinLambda, indefinite_ / kIndefiniteGrowth, lambda_ * std::max(kMaxFall, 1 - f * f * f)});
   indefinite_ = 0;

@@ -32,7 +32,7 @@ constexpr StartElimination::Thinning kThinnedMore{.samples_per_parameter = 6, .m
 // The starts, in the order in which they enter: the given one first.
 class Starts {
  public:
-  // Those of `coarse`, the coarse samples, if there are any, are made at once.
+  // Coarse starts, by the samples `coarse` if there are any, are made at once.
   Starts(const Objective& objective, const std::optional<Objective>& coarse,
          const FactorModel& given, uint64_t seed, StartElimination* elimination, StopCheck stop)
       : objective_(objective),
@@ -185,7 +185,7 @@ std::vector<double> StepsOf(const std::vector<Round>& rounds) {
   return steps;
 }
 
-// By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
+// Relative excess of E on all samples over the estimate from the thinned ones that counts as large,
 // beyond what follows from a fit of p parameters to n values: (1 + p / n) / (1 - p / n).
 constexpr double kLargeMismatch = 0.03;
 
@@ -333,7 +333,7 @@ class Auto : public Solver {
 
 class Multistart : public Solver {
  private:
-  // So many starts at a time are led to their end. The first ones stop after few steps: on these
+  // Leads kTogether starts at a time to their end. The first ones stop after few steps: on these
   // samples they may be misled.
   static std::vector<Round> Rounds(int starts) {
     constexpr int kTogether = 8, kFewTries = 10, kTries = 100;

@@ -342,7 +342,7 @@ FactorModel FreedModel(const Objective& objective, uint64_t seed) {
 // same everywhere.
 double Uniform(std::mt19937_64* engine) { return static_cast<double>((*engine)() >> 11) * 0x1p-53; }
 
-// Log-uniform roughnesses.
+// Model with log-uniform roughnesses.
 FactorModel RoughnessModel(const Objective& objective, std::mt19937_64* engine) {
   const ModelSpec& spec = objective.spec();
   std::vector<Table> D;
@@ -357,7 +357,7 @@ FactorModel RoughnessModel(const Objective& objective, uint64_t seed) {
   return RoughnessModel(objective, &engine);
 }
 
-// And every parameter times a log-uniform factor in [1/2, 2].
+// RoughnessModel, and every parameter times a log-uniform factor in [1/2, 2].
 FactorModel RandomModel(const Objective& objective, uint64_t seed) {
   std::mt19937_64 engine(seed);
   FactorModel model = RoughnessModel(objective, &engine);

@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-// Up to kVector tables, side by side, and what `size` samples read from them.
+// At most kVector tables, side by side, and the values that `size` samples read from them.
 struct ReadJob {
   int size;
   const Cell* cells;

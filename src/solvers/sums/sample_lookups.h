@@ -61,7 +61,7 @@ class SampleLookups {
   void ForChunks(const std::function<void(int, int)>& work) const;
 
  private:
-  // Up to kVector tables that are read by the same lookup (of G: lookups), side by side.
+  // At most kVector tables that are read by the same lookup (of G: lookups), side by side.
   struct Group {
     Factor factor;
     int first, last;

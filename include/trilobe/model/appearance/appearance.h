@@ -39,7 +39,7 @@ struct BeyondData {
   double psnr_db = 0;
 };
 
-// How closely a material resembles its measurement.
+// Similarity of a material and its measurement.
 struct AppearanceReport {
   std::string environment;
   int lights = 0, size = 0;

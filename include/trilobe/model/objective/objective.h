@@ -57,7 +57,7 @@ class Objective {
   const BrdfSamples& samples() const;
   int num_samples() const;
   bool on_grid() const;
-  // Those that were added, or null.
+  // Samples that were added, or null.
   const BrdfSamples* added() const;
   const ModelSpec& spec() const { return spec_; }
   const Weighting& weighting() const;
