@@ -18,15 +18,13 @@
 #include "trilobe/model/objective/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
-DEFINE_int64(
-    seed, 1,
-    "seed of whatever is random: --init=random, random starts of a solver, and what --data_seed is "
-    "of unless that is given");
-DEFINE_int64(
-    data_seed, -1,
-    "seed of what is done to the measurement: the noise of synth: sources, --missing and "
-    "--corrupt; with one of its own, --seed alone moves the start on the same data; -1: as "
-    "--seed");
+DEFINE_int64(seed, 1,
+             "seed of all random numbers: of --init=random, of random starts of a solver, and of "
+             "--data_seed unless that is given");
+DEFINE_int64(data_seed, -1,
+             "seed of random changes to the measurement: the noise of synth: sources, --missing "
+             "and --corrupt; if given, --seed varies the start alone, on the same data; -1: the "
+             "value of --seed");
 DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
 DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
 DEFINE_double(
@@ -34,60 +32,60 @@ DEFINE_double(
     "share of the measured bins or samples to leave out at random, by --data_seed, from 0 up "
     "to 1: how would a fit do with fewer?");
 DEFINE_string(corrupt, "",
-              "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., as "
+              "simulate errors of instruments, by --data_seed: KIND:STRENGTH,..., such as "
               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
 DEFINE_string(
     cosine, "0",
     "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "
-    "to 2: 1 where it has a cosine too many, -1 where it has one too few; o:1 where that "
-    "is cos theta_o; `trilobe info` tells");
+    "to 2: 1 for one cosine too many, -1 for one too few; o:1 for cos theta_o; `trilobe "
+    "info` tells");
 DEFINE_double(scale, 1,
               "multiply all values by this, from 1e-6 to 1e6: 0.01 for percents, 0.3183 for pi f");
 DEFINE_string(azimuth, "from_light",
               "from_mirror: azimuths phi_o of scattered samples are counted from the mirror "
               "direction; `trilobe info` tells");
-DEFINE_string(tilt, "0",
-              "correct a measurement whose sample leant by so many degrees towards azimuth 0, from "
-              "which the light of a table comes, from -30 to 30; `trilobe info` tells; auto: as "
-              "the highlight of a table shows");
+DEFINE_string(
+    tilt, "0",
+    "tilt of the measured sample to correct, in degrees towards azimuth 0, from which the "
+    "light of a table comes, from -30 to 30; `trilobe info` tells; auto: as the highlight "
+    "of a table shows");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
-DEFINE_double(min_theta_d, -1,
-              "leave out bins whose theta_d, half the angle between the two directions, is below "
-              "this, in degrees, from 0 to below 90, since a detector there stands in its own "
-              "light; -1: as far as scattered samples show that it did");
+DEFINE_double(
+    min_theta_d, -1,
+    "leave out bins whose theta_d, half the angle between the two directions, is below "
+    "this, in degrees from 0 to below 90, since a detector there blocks the light; -1: as "
+    "far as scattered samples show that it did");
 DEFINE_bool(extrapolated, false,
-            "of an RGL file, also take what its authors did not measure but extrapolated, and what "
-            "lies beyond its last theta_i");
+            "for an RGL file: also take values that its authors extrapolated instead of "
+            "measuring, and those beyond its last theta_i");
 DEFINE_bool(
     outliers, false,
     "also take the bins of a table that are much darker or brighter than those around them");
 DEFINE_bool(dark_noise, false,
-            "take the readings of a table as they are, though dark noise is more than a tenth of "
-            "their signal; else they become medians of what surrounds them");
+            "keep the readings of a table whose dark noise is more than a tenth of their signal; "
+            "by default they become medians of the values around them");
 DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
-              "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
+              "quantity that a UTIA file stores: brdf, cosine, srgb or dj_brdf "
               "(docs/file-formats.md)");
 DEFINE_string(columns, "",
-              "of a text table, the names of its columns, in the place of a header: "
+              "names of the columns of a text table, in the place of a header: "
               "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
               "wavelength, and - for a column to leave out (docs/file-formats.md)");
 DEFINE_double(theta_i, -1,
-              "of a text table without a column theta_i, the angle of incidence of all its "
-              "samples, in degrees from 0 to below 90");
-DEFINE_string(
-    bands, "",
-    "of spectra, the wavelengths to read, in nm: one, as 550, for all channels; three, as "
-    "650,550,450, as r, g and b, the longest as r; or more, to make a colour of; without, "
-    "all make a colour, and --spectral keeps each (docs/file-formats.md)");
+              "angle of incidence of all samples of a text table without a column theta_i, in "
+              "degrees from 0 to below 90");
+DEFINE_string(bands, "",
+              "wavelengths of spectra to read, in nm: one, as 550, for all channels; three, as "
+              "650,550,450, as r, g and b, the longest as r; or more, to make a colour of; by "
+              "default all make a colour, and --spectral keeps each (docs/file-formats.md)");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
-DEFINE_string(out, "", "where to write: a file or, for fit, study, info and plot, a folder");
+DEFINE_string(out, "", "output: a file or, for fit, study, info and plot, a folder");
 DEFINE_bool(force, false,
-            "overwrite or remove what is in the way of --out, though Trilobe has not written it");
+            "overwrite or remove files in the way of --out even if Trilobe has not written them");
 DEFINE_bool(json, false, "print one JSON object instead of a table");
-DEFINE_bool(verbose, false,
-            "print all there is to say, and not only the verdict and what it rests on");
+DEFINE_bool(verbose, false, "print all details, not only the verdict and what it rests on");
 
 DEFINE_string(
     probe, "",
