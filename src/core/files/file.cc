@@ -140,7 +140,7 @@ class TemporaryFile {
   bool MayBeOpened() const {
     return faccessat(AT_FDCWD, path_.c_str(), R_OK | W_OK, AT_EACCESS) == 0;
   }
-  // Nameless from now on.
+  // Removes the name; the file lives until it is closed.
   void Unlink() {
     if (!path_.empty()) unlink(path_.c_str());
     path_.clear();

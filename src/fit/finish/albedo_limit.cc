@@ -52,7 +52,7 @@ std::vector<double> NodesOf(const Axis& g_axis) {
   return angles;
 }
 
-// Linear between the angles.
+// Linear interpolation between the angles.
 double At(double theta, const std::vector<double>& angles, const std::vector<double>& values) {
   const auto after = std::ranges::upper_bound(angles, theta);
   if (after == angles.begin()) return values.front();

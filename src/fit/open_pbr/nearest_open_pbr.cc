@@ -123,7 +123,7 @@ class SumsCost : public ceres::CostFunction {
     ParallelFor(static_cast<int>(seen.size()), num_threads_, [&](int k) {
       std::vector<double> x(parameters[0], parameters[0] + size);
       if (k > 0) {
-        // Towards the inside.
+        // Differences towards the middle of the bounds.
         constexpr double kStep = 1e-5;
         const double middle = (kBounds[k - 1].least + kBounds[k - 1].most) / 2;
         steps[k - 1] = x[k - 1] > middle ? -kStep : kStep;

@@ -124,7 +124,7 @@ class ModelSearch {
                double E) {
     const double seconds = stopwatch_.Lap();
     double score = options_.judge(model);
-    // Below all others, with which NaN has no order.
+    // NaN has no order: it ranks below all others.
     if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
     best_.candidates.push_back({.name = name,
                                 .num_parameters = layout.num_parameters(model.spec()),

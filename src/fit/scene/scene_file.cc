@@ -105,7 +105,7 @@ class Node {
   // The number's text, as it stands in the file.
   std::string NumberText() const { return std::string(json_.number_text()); }
 
-  // One of these words.
+  // The string, which must be one of these words.
   std::string Word(const std::vector<std::string_view>& known) const {
     std::string word = String();
     if (std::ranges::find(known, word) != known.end()) return word;

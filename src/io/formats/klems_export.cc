@@ -237,7 +237,7 @@ void AppendBasis(Xml* parent) {
   }
 }
 
-// `channel` of `means`.
+// Appends the matrix of `channel` of `means`.
 void AppendMatrix(const std::vector<Rgb>& means, int channel, const char* side, Xml* parent) {
   const size_t size = PatchesOf(Full()).size();
   std::string numbers = "\n";

@@ -257,7 +257,7 @@ class Tables {
         }
         const auto slice = std::span(values.luminance).last(static_cast<size_t>(n) * n);
         const float largest = *std::ranges::max_element(slice);
-        // Nothing that reflects is never drawn.
+        // Positive everywhere, so that all that reflects can be drawn.
         for (float& x : slice) x = largest > 0 ? std::max(x / largest, 1e-4F) : 1;
       }
     }

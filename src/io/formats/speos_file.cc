@@ -30,7 +30,7 @@ class SpeosText {
  public:
   SpeosText(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
 
-  // At what was read last.
+  // Fails at the line of what was read last.
   [[noreturn]] void Fail(const std::string& problem) const {
     throw Error(source_ + ": line " + std::to_string(at_) + ": " + problem);
   }
@@ -81,7 +81,7 @@ class SpeosText {
     return flag == 1;
   }
 
-  // Ascending.
+  // Reads ascending numbers.
   std::vector<double> Numbers(int count, const char* what, double least, double most) {
     std::vector<double> numbers;
     while (numbers.size() < static_cast<size_t>(count)) {

@@ -31,7 +31,7 @@ constexpr std::string_view kOtherUnits[] = {
     "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
 constexpr std::string_view kNoBrdf[] = {"%", "percent"};
 
-// For a note, in UTF-8.
+// A name in quotes for a note, in UTF-8.
 std::string Quoted(std::string_view name) {
   constexpr size_t kLongest = 40;
   return std::string("'").append(Printable(name.substr(0, kLongest))).append("'");

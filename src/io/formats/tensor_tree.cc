@@ -44,7 +44,7 @@ class TreeReader {
   }
 
  private:
-  // Beyond white space and commas.
+  // Skips white space and commas.
   void Skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kBetween), rest_.size())); }
 
   bool Take(char c) {

@@ -82,7 +82,7 @@ class ZemaxTable {
            radial;
   }
 
-  // Linear in all four angles.
+  // Interpolates linearly in all four angles.
   Rgb Interpolated(const DirectionPair& pair) const {
     const ZemaxAngles at = ToZemaxAngles(pair);
     const double azimuth = RadiansToDegrees(at.azimuth);

@@ -234,7 +234,7 @@ std::array<char, 4> ToRgbe(const Rgb& color) {
   return bytes;
 }
 
-// In at most 512 columns: means of pixels.
+// The environment, halved to at most 512 columns as far as both sizes are even: means of pixels.
 Json ToJson(const Environment& probe) {
   int step = 1;
   while (probe.width / step > 512 && probe.width % (2 * step) == 0 &&

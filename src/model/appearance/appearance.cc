@@ -68,7 +68,7 @@ class MeasuredDirections {
   bool everything_ = false;
 };
 
-// Clamped at 0, as a renderer does.
+// The BRDF clamped at 0, as a renderer does.
 AngularBrdf Clamped(const AngularBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const HalfDiffAngles& angles, const Cosines& cosines) {
@@ -78,7 +78,7 @@ AngularBrdf Clamped(const AngularBrdf& brdf) {
   };
 }
 
-// 0 at unmeasured directions.
+// The BRDF, 0 at unmeasured directions.
 BrdfFunction OfMeasured(const AngularBrdf& brdf, const MeasuredDirections& counts) {
   return [&brdf, &counts](const DirectionPair& pair) {
     const HalfDiffAngles angles = ToHalfDiff(pair);

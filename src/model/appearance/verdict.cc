@@ -38,7 +38,7 @@ SeenPlace PlaceOf(const SeenError& error) {
   return place;
 }
 
-// In one region, or in all.
+// Kind of error in one region, or in all.
 Fault FaultAt(const SeenError& error, SeenPlace place) {
   constexpr double kMost = 0.5;
   PlaceError at = error.at(place);

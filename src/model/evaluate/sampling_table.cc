@@ -43,7 +43,7 @@ HalfVectorNodes NodesOf(const ModelSpec& spec) {
   return nodes;
 }
 
-// At least what the table may hold.
+// Upper bound on the values of the table.
 double BoundOf(const FactorModel& model) {
   const double least_cosine = std::cos(kGrazingTheta);
   std::array<double, 3> largest{};

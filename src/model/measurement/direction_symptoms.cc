@@ -272,7 +272,7 @@ class PlaneScan {
     return sum;
   }
 
-  // Between samples linearly; 0 beyond them.
+  // Linear interpolation between samples; 0 beyond them.
   double At(double theta) const {
     const auto next = std::ranges::lower_bound(values_, std::pair(theta, 0.0));
     if (next == values_.end() || (next == values_.begin() && next->first > theta)) return 0;

@@ -40,7 +40,7 @@ class BlockEquations {
     int t, u;
     ModelSpec::ChannelRange channels;
   };
-  // An entry is the cell's k-th.
+  // A cell that contains an entry, as its k-th.
   struct Reader {
     int cell, k;
   };

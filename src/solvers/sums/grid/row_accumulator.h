@@ -28,7 +28,7 @@ class RowLayout {
 
   RowLayout(const ModelSpec& of_model, int max_row);
 
-  // Their numbers.
+  // Numbers of the parameters.
   static int s(int m, int c) { return kChannels * (1 + m) + c; }
   int D(int m, int c) const { return first_D + spec.table(Factor::kD, m, c); }
   int F(int m, int c) const { return spec.table(Factor::kF, m, c); }
