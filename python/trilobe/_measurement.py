@@ -282,18 +282,18 @@ def read(
         azimuth: "from_mirror" where phi_o of scattered samples is counted from the mirror direction.
         tilt: takes out by how much the sample leant towards azimuth 0 [degrees]; "auto" as the highlight of
             a table shows.
-        seed: of whatever is random.
+        seed: seed of all random numbers.
         max_angle: theta_i and theta_o beyond it are left out [degrees].
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
             detector stood in its own light.
         extrapolated: of an RGL file, takes what its authors extrapolated, too.
         outliers: takes samples that are far off those around them, too.
         dark_noise: takes readings that are lost in dark noise as they are, not medians around them.
-        radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
+        radiometry: quantity that a UTIA file stores: "brdf", "cosine", "srgb" or "dj_brdf".
         columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header.
-        theta_i: of a text table without a column of it, the angle of incidence [degrees]; -1 for none.
-        bands: of spectra, the wavelengths to read [nm]: one for all channels, three as r, g and b, the longest as
-            r, or more to make a colour of; without, all make a colour.
+        theta_i: angle of incidence of a text table without a column of it [degrees]; -1 for none.
+        bands: wavelengths of spectra to read [nm]: one for all channels, three as r, g and b, the longest as r, or
+            more to make a colour of; by default all make a colour.
         threads: 0 for all cores.
 
     Raises:

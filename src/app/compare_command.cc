@@ -59,7 +59,7 @@ struct PrunedScene {
   bool reckoned = false;
 };
 
-// Of the picture, which must not replace what is read.
+// Checks that the picture will not replace a file that is read.
 void CheckOut(const Scene& scene, std::vector<std::string> others) {
   if (FLAGS_out.empty()) return;
   for (const std::string& file : FilesOf(scene)) others.push_back(file);

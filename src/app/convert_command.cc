@@ -30,28 +30,26 @@
 #include "trilobe/model/measurement/measurement_stats.h"
 
 DEFINE_double(error, 0,
-              "of a .bsdf or .zemax.bsdf file: how far it may be off the model or the measurement, "
-              "relative, in "
-              "the median over directions; finer tables are taken until it is met. 0: 0.005, of an "
-              "anisotropic model 0.02, or as near as files come, and of a measurement as files of "
-              "usual size come");
-DEFINE_bool(
-    spectral, false,
-    "what is spectral: of `fit`, also write DIR/spectral.json, a model of all wavelengths that "
-    "were measured; of a .bsdf file, spectra in place of RGB, for spectral renderers "
-    "(Mitsuba's spectral variants, pbrt-v4; the others cannot read it); of a .csv file, a "
-    "column a wavelength");
+              "tolerance of a .bsdf or .zemax.bsdf file: median over directions of its relative "
+              "error against the model or the measurement; finer tables are taken until it is met. "
+              "0: 0.005, for an anisotropic model 0.02, or the least that files reach, and for a "
+              "measurement the error of files of usual size");
+DEFINE_bool(spectral, false,
+            "keep spectra: `fit` also writes DIR/spectral.json, a model of all wavelengths that "
+            "were measured; a .bsdf file has spectra in place of RGB, for spectral renderers "
+            "(Mitsuba's spectral variants, pbrt-v4; the others cannot read it); a .csv file has a "
+            "column per wavelength");
 DEFINE_string(at, "",
-              "of a model and a .csv file: a measurement, at the directions of which the values of "
-              "both are written, side by side");
+              "for a model and a .csv file: a measurement, at whose directions the values of both "
+              "are written, side by side");
 DEFINE_bool(picture, false,
-            "of a .mtlx or .principled.json file: draws the model and what the file has, side by "
-            "side, beside it, as .png");
+            "for a .mtlx or .principled.json file: draw the model and the file's material, side "
+            "by side, into a .png beside it");
 
 namespace trilobe {
 namespace {
 
-// What can be known to fail is told before a fit, which takes seconds.
+// Reports foreseeable errors before a fit, which takes seconds.
 void CheckOut(const std::string& source) {
   Inputs({source}).CheckOutput(FLAGS_out);
   const std::filesystem::path folder = std::filesystem::path(FLAGS_out).parent_path();

@@ -28,12 +28,12 @@
 namespace trilobe {
 namespace {
 
-// Of what was measured; empty if nobody asked for it.
+// Picture of the measurement; empty without --out.
 std::string PicturePath() { return FLAGS_out.empty() ? "" : FLAGS_out + "/measured.png"; }
 
 using Json = nlohmann::ordered_json;
 
-// What a measurement says of single directions, and not only at bins: 0 where it was not measured.
+// BRDF of a measurement at single directions, and not only at bins: 0 where it was not measured.
 class MeasuredBrdf {
  public:
   // `extrapolated`: also where it was not measured.
@@ -152,7 +152,7 @@ void DescribeTable(const Measurement& measurement, bool extrapolated) {
   for (const std::string& note : measurement.notes) PrintLine("note", note);
 }
 
-// Which values an angle has among the samples.
+// Values of an angle among the samples.
 struct AngleRange {
   double min_deg = 0, max_deg = 0;
   int values = 0;  // that differ by more than 1e-6 rad
@@ -185,7 +185,7 @@ ValueRange RangeOf(const std::vector<Rgb>& values) {
   return range;
 }
 
-// As of one wavelength.
+// Whether all channels are equal, as for one wavelength.
 bool OneValueForAllChannels(const BrdfSamples& samples) {
   return std::ranges::all_of(samples.rho,
                              [](const Rgb& rho) { return rho[0] == rho[1] && rho[1] == rho[2]; });

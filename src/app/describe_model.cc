@@ -55,7 +55,7 @@ int CountUnobserved(const ModelFile& file, Factor factor) {
   return count;
 }
 
-// For light along `phi_i` [rad].
+// BRDF for light along `phi_i` [rad].
 BrdfFunction BrdfOf(const FactorModel& model, double phi_i) {
   return [brdf = MaterialOf(model).spherical, phi_i](const DirectionPair& pair) {
     SphericalAngles at = ToSphericalAngles(pair);

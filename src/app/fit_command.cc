@@ -54,7 +54,7 @@ int RunFitOfOne(const std::string& source) {
     settings.plots = false;
   }
   std::optional<ResultFolder> folder;
-  // Who asks for files gets them.
+  // Flags that ask for files imply a folder for them.
   const bool wants_files = settings.plots || settings.reconstruction || settings.convergence;
   const std::string out = FLAGS_out.empty() && wants_files ? "out/" + FitNameOf(source) : FLAGS_out;
   if (!out.empty()) {

@@ -32,8 +32,8 @@
 #include "trilobe/io/model_files/model_file.h"
 
 DEFINE_string(shard, "",
-              "i/n: of many fits make only every n-th, from the i-th on, and leave the page to "
-              "the same command without --shard, when all shards are through");
+              "i/n: make only every n-th of many fits, from the i-th on, and leave the page to the "
+              "same command without --shard, after all shards have ended");
 
 namespace trilobe {
 namespace {

@@ -20,7 +20,7 @@ namespace trilobe {
 // own, so names must differ. Throws Error.
 std::vector<FitOutcome> ListSources(std::span<const std::string> arguments);
 
-// Of so many jobs, those that --shard leaves. Throws Error for a bad value.
+// Numbers of the jobs, out of so many, that --shard leaves. Throws Error for a bad value.
 std::vector<size_t> JobsOfShard(size_t count_of_jobs);
 
 // Fills an outcome from a report.json. Throws Json::exception for one of another version.

@@ -33,8 +33,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// "7 of 9 cannot be told apart; sphere 45.2 dB in the median, at least 33 (brass)", of those that
-// have a model.
+// Text such as "7 of 9 cannot be told apart; sphere 45.2 dB in the median, at least 33 (brass)", on
+// the outcomes that have a model.
 std::string Summary(std::vector<FitOutcome> outcomes) {
   std::erase_if(outcomes, [](const FitOutcome& outcome) { return outcome.verdict.empty(); });
   const auto same =

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// That a page holds, some 30 kB each; one of more fits compares their pictures alone.
+// Most models that a page holds, some 30 kB each; a page of more fits compares pictures alone.
 constexpr size_t kMostModels = 200;
 
 // Tables need no more digits for a picture.
@@ -33,7 +33,7 @@ void RoundNumbers(Json* value) {
   for (Json& inner : *value) RoundNumbers(&inner);
 }
 
-// What a picture needs of a model file, null if there is none.
+// The part of a model file that a picture needs, null if there is no file.
 Json ModelToDraw(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   Json model = Json::parse(file, nullptr, false);
@@ -141,7 +141,7 @@ std::string FitNameOf(const std::string& source) {
   if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
   const std::filesystem::path file = std::filesystem::path(source).filename();
   const std::string name = file.stem().string();
-  // As "." is of "..csv": then the whole name will do.
+  // "." is the stem of "..csv", for example: then the whole name will do.
   const bool taken = name == "." || name == ".." || name == kTableName || name == kPageName;
   return taken ? file.string() : name;
 }

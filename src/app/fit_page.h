@@ -17,7 +17,7 @@ struct FitOutcome {
   std::string undrawn = {};  // why pictures are missing; empty if they are not
   // Visible difference of the model in words, and its grade (NameOf(Visibility)).
   std::string verdict = {}, visibility = {};
-  // Of the sphere (AppearanceReport) and of the fit; 0 if unknown.
+  // Errors of the sphere (AppearanceReport) and of the fit; 0 if unknown.
   double psnr_db = 0, mean_delta_e = 0, mean_color_error = 0, objective = 0, seconds = 0;
   int num_parameters = 0;  // stored
   bool anisotropic = false;

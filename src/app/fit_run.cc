@@ -120,7 +120,7 @@ void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* fol
   folder->Write(kViewName, [&](std::ostream& out) { out << page.text; });
 }
 
-// As WriteOtherFiles.
+// Does the work of WriteOtherFiles, whose errors also say where the model is.
 std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   const int threads = run->objective->num_threads();
   FitReport& report = run->report;
@@ -179,7 +179,7 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
                 folder->PathOf(kBandsName));
     });
   }
-  // Who ends the program early does not wait for pictures.
+  // Users who interrupt the program do not wait for pictures.
   if (report.interrupted) drawings.clear();
   ParallelFor(static_cast<int>(drawings.size()), threads, [&](int k) {
     try {
@@ -222,7 +222,7 @@ void ConvergenceCurve::Write(const std::string& path, const Objective& objective
     out << "iteration,seconds,objective,psnr_db,rmse,mean_relative_error,mean_log_error\n"
         << std::setprecision(std::numeric_limits<double>::max_digits10);
     for (const auto& [record, model] : points) {
-      // Of the form that was fitted, whichever was chosen then.
+      // Objective for the form that was fitted then, which need not be the chosen one.
       const ScoreReport score = ScoreModel(Objective(objective, model.spec()), model);
       out << record.iteration << ',' << record.seconds << ',' << score.objective << ','
           << score.psnr_db << ',' << score.rmse << ',' << score.mean_relative_error << ','
@@ -249,7 +249,7 @@ std::string FitKey(const FitSettings& settings, const Source& source) {
 
 namespace {
 
-// What the model at `path` is of; "" if there is none, or if this fit makes it again.
+// Origin of the model at `path`; "" if there is none, or if this fit makes it again.
 std::string WhatEarlierIsOf(const std::string& path, const FitInfo& now) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return "";

@@ -65,7 +65,7 @@ struct FitRun {
   ModelFile file;
   FitReport report;
   ConvergenceCurve convergence;
-  // What the folder's earlier model was of, if it is another one: it is kept (kPreviousModelName).
+  // Origin of the folder's earlier model, if it is another one: it is kept (kPreviousModelName).
   std::string earlier = {};
 };
 

@@ -21,40 +21,37 @@ DEFINE_string(
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
 DEFINE_int32(max_parameters, 822,
-             "with --model=auto: how many parameters the model may store; without it, of scattered "
-             "samples, as many as their default form has");
-DEFINE_double(
-    robust, 0,
-    "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
-    "by reweighting; 0 for none");
+             "with --model=auto: most parameters that the model may store; if not given, for "
+             "scattered samples, as many as their default form has");
+DEFINE_double(robust, 0,
+              "continue with a loss that is linear in errors above this, as the weighting scales "
+              "them, by reweighting; 0 for none");
 DEFINE_double(
     smoothness, trilobe::FitOptions().smoothness,
-    "let E rise by this share at the end for tables as smooth as that allows, where that is not "
-    "seen: without holes, and without falls that D and G exchange; 0 is the least E");
+    "relative rise of E that is allowed at the end for the smoothest tables, if it is not "
+    "seen: without holes, and without falls that D and G exchange; 0 for the least E");
 DEFINE_bool(match_reflectance, true,
-            "of a table: where a fit that has converged reflects more or less light than was "
-            "measured, by more than 1 %, let E rise a little to mend that, as far as neither the "
-            "sphere nor the mean log error gets worse");
-DEFINE_bool(
-    raw, false,
-    "store the model that the solver found, as for comparing solvers: entries at the edge of "
-    "the data are not tied, reflected light is not matched, tables are not smoothed");
-DEFINE_bool(
-    held_out, false,
-    "also fit without a fifth of the blocks of directions, drawn by --data_seed, and report "
-    "E and Delta E at these: how well does it predict what it has not seen? Takes twice as "
-    "long");
+            "for a table: if a fit that has converged reflects more or less light than was "
+            "measured, by more than 1 %, let E rise a little to correct that, as far as neither "
+            "the sphere nor the mean log error gets worse");
+DEFINE_bool(raw, false,
+            "store the model that the solver found, to compare solvers, for example: entries at "
+            "the edge of the data are not tied, reflected light is not matched, tables are not "
+            "smoothed");
+DEFINE_bool(held_out, false,
+            "also fit without a fifth of the blocks of directions, drawn by --data_seed, and "
+            "report E and Delta E at these, which shows how well unseen directions are predicted. "
+            "Takes twice as long");
 DECLARE_bool(spectral);
 DEFINE_bool(reconstruction, false,
-            "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
-            "model DIR/reconstruction.bin, in UTIA's");
-DEFINE_bool(
-    convergence, false,
-    "also write DIR/convergence.csv: errors of the models on the way, scored when the fit is over");
-DEFINE_bool(
-    plots, true,
-    "write the page of `trilobe view` and the pictures of `trilobe plot` into DIR; without --out "
-    "that is out/NAME. Of several SOURCEs, only if asked for");
+            "also write DIR/reconstruction.binary, the fit in MERL layout, or, for an anisotropic "
+            "model, DIR/reconstruction.bin, in UTIA's");
+DEFINE_bool(convergence, false,
+            "also write DIR/convergence.csv: errors of the intermediate models, scored after the "
+            "fit");
+DEFINE_bool(plots, true,
+            "write the page of `trilobe view` and the pictures of `trilobe plot` into DIR; "
+            "without --out that is out/NAME. For several SOURCEs, only if asked for");
 
 namespace trilobe {
 namespace {

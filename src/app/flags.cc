@@ -21,18 +21,16 @@
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
 DEFINE_int64(seed, 1,
-             "seed of whatever is random: --init=random, random starts of a solver and, where "
-             "--data_seed is "
-             "not given, what is done to the measurement");
+             "seed of all random numbers: of --init=random, of random starts of a solver, and of "
+             "--data_seed unless that is given");
 DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
-DEFINE_string(out, "", "where to write: a file or, for fit, study, info and plot, a folder");
+DEFINE_string(out, "", "output: a file or, for fit, study, info and plot, a folder");
 DEFINE_bool(force, false,
-            "overwrite or remove what is in the way of --out, though Trilobe has not written it");
+            "overwrite or remove files in the way of --out even if Trilobe has not written them");
 DEFINE_bool(json, false, "print one JSON object instead of a table");
-DEFINE_bool(verbose, false,
-            "print all there is to say, and not only the verdict and what it rests on");
+DEFINE_bool(verbose, false, "print all details, not only the verdict and what it rests on");
 
 DEFINE_string(
     probe, "",
@@ -104,7 +102,7 @@ std::string FlagHelp(const std::string& flag) {
 
 int ThreadsFromFlags() {
   if (FLAGS_threads < 0) throw Error("--threads is negative; give 0 for all cores");
-  // Those that this process may use.
+  // Cores that this process may use.
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (FLAGS_threads == 0) return cores;
   static bool told = false;

@@ -43,7 +43,7 @@ bool IsDefault(const std::string& flag);
 // The parts of the value of a flag, without blanks around them.
 std::vector<std::string> Split(const std::string& text, char separator);
 
-// Which of these flags were given: name to value.
+// Values of those of these flags that were given, by name.
 std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags);
 
 // A flag for `trilobe help COMMAND`: "  --lobes=3", and its description on the next line.

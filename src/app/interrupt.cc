@@ -17,7 +17,7 @@ std::atomic<int> unsaved_models = 0;
 std::atomic<bool> on_terminal = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-// As if nobody had caught it; from a handler it arrives when the handler is through.
+// Takes the signal's default action; from a handler it arrives when the handler is through.
 void EndBySignal(int signal) {
   std::signal(signal, SIG_DFL);
   std::raise(signal);

@@ -47,8 +47,8 @@ namespace {
 
 using gflags::CommandLineFlagInfo;
 
-// What a user has typed, taken apart by the rules of gflags: a word that begins with - is a flag,
-// whose value follows after = or, but for one of true and false, as the next word; after -- all are
+// The command line, taken apart by the rules of gflags: a word that begins with - is a flag, whose
+// value follows after = or, but for one of true and false, as the next word; after -- all are
 // words.
 struct CommandLine {
   struct Flag {
@@ -62,7 +62,7 @@ struct CommandLine {
   bool version = false;  // --version
 };
 
-// With a value, too, which gflags would take for the list of all flags of all libraries.
+// Also recognises --help=VALUE, which gflags would take for the list of all flags of all libraries.
 bool IsHelp(std::string_view word) {
   const std::string_view name = word.substr(0, word.find('='));
   return word == "-h" || name == "--help" || name == "-help";
@@ -78,7 +78,7 @@ bool IsKnown(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
 }
 
-// What a flag is called today that has had another name.
+// Current name of a flag that has had another one.
 std::string CurrentName(const std::string& name) {
   constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
       {"max_numbers", "max_parameters"}, {"guide", "prior"}, {"course", "convergence"}};
@@ -94,7 +94,7 @@ std::string WholeNumber() {
          std::to_string(std::numeric_limits<Integer>::max());
 }
 
-// What values of a type are, in words.
+// Permitted values of a type, in words.
 std::string ValuesOf(const std::string& type) {
   if (type == "bool") return "true or false";
   if (type == "double") return "a number";
@@ -190,7 +190,7 @@ void PrintHelp() {
 }
 
 void PrintHelp(const Command& command) {
-  // Before anything is printed: it may throw.
+  // Computed before anything is printed, since it may throw.
   const std::string particular =
       command.particular_help != nullptr ? "\n" + command.particular_help() : "";
   std::cout << "usage: trilobe " << command.name << " " << command.arguments
@@ -202,8 +202,7 @@ void PrintHelp(const Command& command) {
   for (const std::string& flag : command.flags) std::cout << FlagHelp(flag);
 }
 
-// Of the flags that a command takes, the one that another name was meant to be; "" if it is far
-// from all.
+// The flag of a command that another name was probably meant to be; "" if it is far from all.
 std::string MeantFlag(const std::string& name, const Command& command) {
   std::vector<std::string_view> taken(command.flags.begin(), command.flags.end());
   taken.insert(taken.end(), command.particular_flags.begin(), command.particular_flags.end());
@@ -219,7 +218,7 @@ void CheckFlags(const CommandLine& line, const Command& command) {
       return std::ranges::find(names, flag.name) != names.end();
     };
     if (is_in(command.flags) || is_in(command.particular_flags)) continue;
-    // Those of gflags and glog, as --version and --v, are everybody's.
+    // Flags of gflags and glog, such as --version and --v, are valid for all commands.
     if (flag.known &&
         gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str()).filename.find("src/app/") ==
             std::string::npos) {
@@ -272,7 +271,7 @@ int Run(const CommandLine& line) {
   return command.run(arguments);
 }
 
-// What was printed may still be in a buffer, and its disk full.
+// Printed text may still be in a buffer, and its disk full.
 void FlushOutput() {
   const bool written = std::cout.flush() && std::fflush(stdout) == 0;
   if (!written) throw Error("cannot write to standard output");
@@ -312,8 +311,8 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
 #ifdef __GLIBC__
-  // What was freed stays for what is made next. Else each large table comes as pages of its own,
-  // and to clear these takes the system 3 % of a fit.
+  // Freed memory stays for reuse. Otherwise each large table comes as pages of its own, and to
+  // clear these takes the system 3 % of a fit.
   constexpr int kAll = 1 << 30;  // bytes
   mallopt(M_MMAP_THRESHOLD, kAll);
   mallopt(M_TRIM_THRESHOLD, kAll);

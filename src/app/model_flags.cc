@@ -14,40 +14,39 @@
 #include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"
 
-DEFINE_string(
-    model, "shared",
-    "shared: D and G shared by the channels, F by the lobes (Peng et al.), isotropic, or "
-    "anisotropic where the measurement is; isotropic: though it is not; anisotropic: on the nodes "
-    "of the paper and without a prior; independent: one lobe, nothing shared (Bagher et al.); "
-    "auto: what looks best within --max_parameters (docs/model-choice.md, docs/anisotropic.md)");
+DEFINE_string(model, "shared",
+              "form of the model. shared: D and G shared by the channels, F by the lobes (Peng et "
+              "al.), anisotropic if the measurement is, else isotropic; isotropic: the same, "
+              "isotropic for any measurement; anisotropic: on the nodes of the paper and without a "
+              "prior; independent: one lobe, nothing shared (Bagher et al.); auto: the form that "
+              "looks best within --max_parameters (docs/model-choice.md, docs/anisotropic.md)");
 DEFINE_string(
     d_nodes, "",
-    "of an anisotropic model, nodes of D: so many theta_h by so many phi_h, theta_h at even "
-    "steps, or with an r (12rx48) of the root of theta_h; by default 12rx36, or fewer phi_h where "
-    "the data have fewer; with --model=anisotropic 6x48");
-DEFINE_string(
-    stretch, "",
-    "of an isotropic model, ALONG,ACROSS: exponents by which highlights get wider with theta_d, "
-    "along the plane of both directions and across it (docs/model.md#stretched-highlights); one "
-    "pair for all lobes, or one a lobe, ALONG,ACROSS,ALONG,ACROSS...; by default 0,0, as in the "
-    "paper; --model=auto finds them");
+    "nodes of D of an anisotropic model: theta_h by phi_h, theta_h at even steps, or with "
+    "an r (12rx48) at even steps of its root; by default 12rx36, or fewer phi_h where the "
+    "data have fewer; with --model=anisotropic 6x48");
+DEFINE_string(stretch, "",
+              "ALONG,ACROSS: exponents by which highlights of an isotropic model get wider with "
+              "theta_d, along the plane of both directions and across it "
+              "(docs/model.md#stretched-highlights); one pair for all lobes, or one a lobe, "
+              "ALONG,ACROSS,ALONG,ACROSS...; by default 0,0, as in the paper; --model=auto finds "
+              "them");
 DEFINE_int32(f_bins, 0,
-             "of an anisotropic model, bins of F over theta_d, from 4; by default 6, with "
+             "bins of F over theta_d of an anisotropic model, from 4; by default 6, with "
              "--model=anisotropic 90");
 DEFINE_string(
     g_nodes, "",
-    "of an anisotropic model, nodes of G: theta by phi, at even steps; by default 6x24, "
-    "or fewer phi where the data have fewer, and the horizon; with --model=anisotropic 6x48");
+    "nodes of G of an anisotropic model: theta by phi, at even steps; by default 6x24, or "
+    "fewer phi where the data have fewer, and the horizon; with --model=anisotropic 6x48");
 DEFINE_string(
     nodes, "given",
-    "of an anisotropic model: given (by --d_nodes and --g_nodes, or by default); held_out: those "
-    "of D and G, from coarse to fine, with the least error on directions that are held out "
-    "(docs/anisotropic.md)");
-DEFINE_double(
-    prior, 1,
-    "of scattered samples: how much a small model, fitted first, counts between the measured "
-    "directions, much less where no azimuths matter (docs/anisotropic.md, "
-    "docs/few-samples.md); 0: not at all, the default with --model=anisotropic");
+    "choice of the nodes of an anisotropic model. given: by --d_nodes and --g_nodes, or "
+    "by default; held_out: those of D and G, from coarse to fine, with the least error on "
+    "directions that are held out (docs/anisotropic.md)");
+DEFINE_double(prior, 1,
+              "weight of a small model, fitted first, between the directions of scattered samples; "
+              "it counts much less where no azimuths matter (docs/anisotropic.md, "
+              "docs/few-samples.md); 0: no prior, the default with --model=anisotropic");
 
 namespace trilobe {
 namespace {

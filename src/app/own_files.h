@@ -5,7 +5,7 @@
 
 #include "trilobe/model/measurement/measurement.h"
 
-// What may be overwritten or removed: what Trilobe has written, and with --force anything.
+// Files that may be overwritten or removed: those that Trilobe has written, and with --force any.
 
 namespace trilobe {
 

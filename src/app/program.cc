@@ -29,7 +29,7 @@ std::string ProgramName() { return std::string("trilobe ").append(gflags::Versio
 const std::string& ProgramBuild() {
   static const std::string build = [] {
     std::string bytes = FileBytes("/proc/self/exe");
-    // Where the library is part of the program, both are one file.
+    // If the library is part of the program, both are one file.
     Dl_info program{}, library{};
     if (dladdr(reinterpret_cast<void*>(&ProgramName), &program) != 0 &&
         dladdr(reinterpret_cast<void*>(&ContentHash), &library) != 0 &&

@@ -22,7 +22,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void Show(const IterationRecord& record);
-  // How many starts of a round have ended. From any thread, one call at a time.
+  // Shows how many starts of a round have ended. From any thread, one call at a time.
   void Show(const StartProgress& starts) const;
 
  private:

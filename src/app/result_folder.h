@@ -70,7 +70,7 @@ class ResultFolder {
   // Checksums by name, for the record of the complete run.
   const std::map<std::string, std::string>& checksums() const { return checksums_; }
 
-  // Which of the names exist in the folder. After the first Write they are all of this run.
+  // Those of the names that exist in the folder. After the first Write they are all of this run.
   std::vector<std::string> Files() const;
 
  private:

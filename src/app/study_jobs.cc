@@ -168,7 +168,8 @@ FitSettings SettingsOf(const std::string& solver, const Values& values, int star
       std::ranges::any_of(values, [](const auto& value) { return ChangesForm(value.first); });
   if (IsDefault("held_out") && changes_form) SetFlag("held_out", "true");
   for (const auto& [flag, value] : values) SetFlag(flag, value);
-  // What a solver found, without what would follow it. As to auto's choice of a form, that is it.
+  // Studies are of solvers, without the steps after them. With --model=auto, the choice of a form
+  // is the result.
   if (IsDefault("raw") && !ChoosesModel()) SetFlag("raw", "true");
   if (start > 1) {
     SetFlag("init", "random");
@@ -279,7 +280,7 @@ std::vector<StudyJob> StudyJobsFromFlags(std::span<const std::string> arguments)
                            method_names[job.run.problem].NameOf(job.run.method) + "/start-" +
                            std::to_string(start);
           CheckNew(job, &folders);
-          // Of the runs on the same data, the first tells what was noticed of them.
+          // The first of the runs on the same data tells what was noticed of them.
           job.settings.tell_notes = told.insert(job.folder_of_problem).second;
           job.outcome = {.name = job.run.folder, .source = source.source};
           jobs.push_back(std::move(job));

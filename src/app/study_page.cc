@@ -21,7 +21,7 @@ std::string ExcessText(double excess) {
   return Text(1 + excess, 2) + " times";
 }
 
-// More time might have led there where a limit stopped runs.
+// Time as text. If a limit stopped runs, more time might have led to that E.
 std::string SecondsText(double seconds, const MethodSummary& of) {
   if (std::isfinite(seconds)) return Text(seconds, 2) + " s";
   if (of.failed == of.runs) return "";

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// What the page of a study shows besides its runs.
+// Contents of the page of a study besides its runs.
 struct StudyPageContents {
   // How it was made: program, command, limits, threads, machine, date; each with its name.
   std::vector<std::pair<std::string, std::string>> setting;

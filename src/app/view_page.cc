@@ -25,7 +25,7 @@ void Compare(const SeenError& seen, const Measurement& measured, const std::opti
   contents->delta_e_95 = seen.delta_e_95;
 }
 
-// As a fit does.
+// Compares at samples, as a fit does.
 void CompareAtSamples(const FactorModel& model, const Measurement& measured,
                       const AppearanceOptions& appearance, PageContents* contents) {
   const int threads = appearance.num_threads;

@@ -21,7 +21,7 @@ struct ViewedPage {
   bool has_measured = false;  // the page also shows the measurement
 };
 
-// What is known of a model beside its measurement.
+// Known differences of a model and its measurement.
 struct Compared {
   std::optional<SeenError> seen = {};  // their difference; else it is computed, on the sphere
   std::optional<Basis> basis = {};     // of a verdict; else of the samples of the measurement

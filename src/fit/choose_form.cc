@@ -44,7 +44,7 @@ ModelCandidate Judged(const std::string& name, const SolvedForm& form,
   return {.name = name,
           .num_parameters = form.model.spec().num_parameters(),
           .E = form.summary.final_objective,
-          // Below all others, with which NaN has no order.
+          // NaN has no order: it ranks below all others.
           .score = std::isnan(score) ? -std::numeric_limits<double>::infinity() : score,
           .seconds = seconds};
 }

@@ -25,7 +25,8 @@
 namespace trilobe {
 namespace {
 
-// From a fit, so that few passes and steps are enough. Returns the objective of the last pass.
+// Starts from a fit, so that few passes and steps are enough. Returns the objective of the last
+// pass.
 Objective FitRobustly(const Objective& objective, const FinishOptions& options,
                       FactorModel* model) {
   constexpr int kPasses = 2, kSteps = 10;
@@ -42,8 +43,8 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
   return reweighted;
 }
 
-// How much a model looks like the measurement on a sphere [dB]: of what was measured and, where
-// some was not, of all directions. The measured spheres are rendered when they are first asked for.
+// PSNR of a model's sphere against the measurement's [dB]: over what was measured and, if some was
+// not, over all directions. The measured spheres are rendered at the first use.
 class SphereScores {
  public:
   SphereScores(const BrdfTable& measured, const AppearanceOptions& options)
@@ -102,8 +103,8 @@ class NoHarm {
   double measured_, beyond_, log_error_;
 };
 
-// As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
-// the fit's spec.
+// Matches the reflectance as far as that does no harm, if it is worth it. `solved`: the objective
+// that has been minimised, for models of the fit's spec.
 void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereScores* scores,
                         FinishedFit* fit) {
   constexpr double kPrices[] = {30, 10, 3};
@@ -112,8 +113,9 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereSc
   if (!ReflectanceOf(solved, model).IsOff()) return;  // and needs no prior
   const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(solved.coverage(), model);
-  // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
-  // entries that hardly a sample reads are held by what the model says where nothing was measured.
+  // Values that a thinned table stores beyond the data stay, as they were fitted to more than
+  // these; and entries that hardly a sample reads are held by the model's values where nothing was
+  // measured.
   const Objective held = thinned ? UnmeasuredPrior(solved, model).JoinTo(solved) : solved;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
@@ -128,7 +130,7 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereSc
     }
     if (!no_harm) no_harm.emplace(fit->objective, model, scores);
     if (!(*no_harm)(matched->model)) continue;
-    // Only tables in full are smoothed after this.
+    // Only full tables are smoothed after this.
     if (thinned && HasRings(matched->model, solved.num_threads())) continue;
     fit->matched = {.error_before = matched->error_before, .error_after = matched->error_after};
     fit->model = std::move(matched->model);
@@ -151,7 +153,7 @@ ModelChoiceOptions ChoiceByScores(SphereScores* scores, const FinishOptions& opt
   return choice;
 }
 
-// As far as the share allows and does no harm.
+// Smooths tables as far as the share allows and does no harm.
 void SmoothOut(const Objective& solved, const FinishOptions& options, SphereScores* scores,
                FinishedFit* fit) {
   std::optional<NoHarm> no_harm;
@@ -166,7 +168,7 @@ void SmoothOut(const Objective& solved, const FinishOptions& options, SphereScor
   fit->model = std::move(smoothest->model);
 }
 
-// If the sphere hardly suffers.
+// Removes rings if the sphere hardly suffers.
 void EvenOut(const Objective& solved, const StopCheck& stop, SphereScores* scores,
              FinishedFit* fit) {
   std::optional<NoHarm> no_harm;
@@ -195,9 +197,9 @@ void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& c
                         .seconds = seconds});
 }
 
-// Unless E would rise by so much that the data themselves ask for the light. Where that leaves a
-// glow, it is limited beyond the data and, as far as it takes, at their end, where few samples ask
-// for anything. Notes what is left.
+// Limits albedos unless E would rise by so much that the data themselves ask for the light. A glow
+// that remains is limited beyond the data and, as far as it takes, at their end, where few samples
+// ask for anything. Notes what is left.
 void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
   constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3, kNotable = 1.05;
   const Objective data(fit->objective.data(), fit->model.spec());
@@ -258,11 +260,11 @@ Weighting TakeBestForm(const Objective& solved, const FinishOptions& options, Sp
 
 FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
-  // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
+  // The steps below refit parameters, and must not lose what the weights of a robust fit have won.
   Objective solved = objective;
   const std::vector<double> coverage = objective.coverage();
   const bool has_prior = objective.has_prior();
-  // Before CorrectOvershoot adds more to `solved`.
+  // Must precede CorrectOvershoot, which adds more to `solved`.
   if (has_prior && options.max_parameters == 0) objective = Objective(objective.data());
   FinishedFit fit{.objective = objective, .model = std::move(model)};
   if (options.robust > 0) {

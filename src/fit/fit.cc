@@ -133,8 +133,8 @@ class Fitting {
                                 : FindInitialModel(options_.init).make(objective, options_.seed);
   }
 
-  // Which forms there are besides the spec, which is made to keep to the budget. Of isotropic ones
-  // they are made of the fit, when that is finished (ChooseModel).
+  // Sets the forms to choose from besides the spec, which is made to keep to the budget. Isotropic
+  // ones are made from the finished fit (ChooseModel).
   void MakeReadyToChoose(int num_samples, ModelSpec* spec) {
     constexpr int kOfTables = 822;  // of any size
     const int budget =
@@ -182,7 +182,7 @@ class Fitting {
     SolvedForm form = SolveForm(fit->objective, prior, std::move(*model), /*is_first=*/true);
     fit->seconds.solve = stopwatch_.Lap();
     ReportForm(form, fit);
-    // As the solver left it; what follows may take longer than somebody who ends it waits.
+    // The solver's model, since the steps below may take longer than somebody who ends it waits.
     if (!options_.stop()) {
       fit->file.model = form.model;
       Canonicalize(fit->objective, &fit->file.model);
@@ -217,7 +217,7 @@ class Fitting {
     fit->interrupted = options_.stop();
   }
 
-  // What wavelengths are fitted to: all samples or, of a table, those that have spectra and are
+  // Objective of the wavelengths: all samples or, for a table, those that have spectra and are
   // fitted with the values that they were read with.
   Objective WithSpectra(const Objective& data) const {
     if (!measurement_.table) return data;
@@ -261,8 +261,8 @@ class Fitting {
     return {std::move(data), std::move(solved), std::move(model), std::move(summary)};
   }
 
-  // Of the forms the one that looks best: beside a picture or, where there is none, at samples held
-  // out, and then fitted to all.
+  // Chooses the form that looks best: in a picture or, if there is none, at samples held out; it is
+  // then fitted to all.
   void Choose(const std::optional<SyntheticPrior>& prior, SolvedForm* form, FitResult* fit) const {
     const auto solve = [&](const Objective& samples, const ModelSpec& spec) {
       const Objective data(samples, spec);
@@ -406,7 +406,7 @@ class Fitting {
                                 Appearance());
   }
 
-  // As all samples were fitted, from that fit, in few steps.
+  // Fits a part of the samples as all were fitted, from that fit, in few steps.
   FactorModel FitTo(const BrdfSamples& part, FactorModel model) const {
     const Objective data(part, model.spec(), options_.weighting, options_.num_threads);
     const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, data);

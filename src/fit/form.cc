@@ -35,7 +35,7 @@ void CheckNothingAnisotropic(const FormOptions& options) {
   if (given != nullptr) throw Error("--" + std::string(given) + " is for anisotropic models");
 }
 
-// Where directions stand on a grid of few theta, `g_nodes` is not 0: then G has so many nodes.
+// For directions on a grid of few theta, `g_nodes` is the number of nodes of G, else 0.
 ModelSpec IsotropicSpec(const FormOptions& options, const MerlGrid& grid, int g_nodes = 0) {
   CheckNothingAnisotropic(options);
   const bool independent = options.kind == Kind::kIndependent;

@@ -57,7 +57,7 @@ double SumInDecibels(double a, double b) {
   return -10 * std::log10(std::pow(10, -a / 10) + std::pow(10, -b / 10));
 }
 
-// Of what was measured, and of a guess that is off by so much of `guess`.
+// Error of the measured part and of a guess, whose error is `share` times `guess`.
 WholeSphere Joined(const SeenError& seen, const SphereError& guess, double share) {
   return {.mean_delta_e = std::hypot(seen.mean_delta_e, share * guess.mean_delta_e),
           .psnr_db = SumInDecibels(seen.psnr_db, guess.psnr_db - 20 * std::log10(share))};

@@ -34,8 +34,8 @@ bool IsHeldOut(const HalfDiffAngles& at, uint64_t seed) {
   return UniformAt(seed, number) < kShare;
 }
 
-// Where there are no samples nothing is known but that a material is hardly ever brighter than
-// where there are. ChooseModel lets a form lose 3 dB there, which is to be four times the reach.
+// Without samples, nothing is known but that a material is hardly ever brighter than where there
+// are some. ChooseModel lets a form lose 3 dB there, which is to be four times the reach.
 double ScoreBeyond(const Objective& part, const FactorModel& model) {
   constexpr double kOvershoot = 4;  // as in CorrectOvershoot
   const Reach reach = ReachOf(part.data().samples(), model, part.num_threads());
@@ -43,7 +43,7 @@ double ScoreBeyond(const Objective& part, const FactorModel& model) {
   return -5 * std::log10(std::max(reach.beyond, 1.0));
 }
 
-// All samples move what is stored of a form that was fitted to a part of them.
+// Refits the stored parameters of a form that was fitted to a part of the samples, to all of them.
 FactorModel FitToAll(const Objective& solved, const ChosenModel& chosen, const StopCheck& stop) {
   constexpr int kSteps = 10;
   constexpr double kSmall = 1e-3;

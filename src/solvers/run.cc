@@ -139,7 +139,7 @@ SolverSummary Run::Finish() {
   summary_.seconds = summary_.trace.back().seconds;
   VLOG(1) << summary_.solver << " ended: " << StopReasonName(summary_.stop_reason) << ", E "
           << best_objective_;
-  // Who ends a run does not wait for that.
+  // Users who interrupt a run do not wait for the diagnosis.
   if (summary_.used.diagnose && reason_ != StopReason::kInterrupted) {
     const ScopedTimer timer = Time(&PhaseSeconds::diagnosing);
     summary_.diagnosis = Diagnose(objective_, *model_);

@@ -1,4 +1,4 @@
-// What a SolverSummary says to people.
+// Reports of a SolverSummary for people.
 
 #include <algorithm>
 #include <iomanip>

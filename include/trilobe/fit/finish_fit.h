@@ -18,8 +18,7 @@
 
 namespace trilobe {
 
-// Which steps follow the solver. If stopped before a form is chosen, the model may exceed
-// max_parameters.
+// Steps after the solver. If stopped before a form is chosen, the model may exceed max_parameters.
 struct FinishOptions {
   // Above 0: replaces the model by the smoothest one whose E is higher by at most this fraction
   // (Smoothest), if scores hardly suffer. Not applied to a form that max_parameters chooses.

@@ -45,7 +45,7 @@ struct FitResult {
     int samples = 0;
   };
   std::optional<Prior> prior = {};
-  // What changed the model after the solver (FinishedFit).
+  // Changes to the solver's model (FinishedFit).
   struct Finished {
     std::vector<FinishingStep> steps = {};
     std::vector<ModelCandidate> candidates = {};
@@ -56,7 +56,8 @@ struct FitResult {
     std::optional<FinishedFit::Glow> glow = {};  // FinishedFit::glow
   } finished = {};
   int stored_parameters = 0;
-  // Of the stored model, on the data alone. summary.final_objective is of the solver's model.
+  // Score of the stored model on the data alone; summary.final_objective is that of the solver's
+  // model.
   ScoreReport score = {};
   std::optional<AppearanceReport> appearance = {};  // for a table or samples on a grid
   std::optional<SeenError> samples_seen = {};       // for other samples

@@ -51,9 +51,9 @@ struct FitOptions {
   // Returns the solver's model unchanged except for canonical form, which changes no value. Sets
   // smoothness to 0 and match_reflectance to false. An error with robust or choose_form.
   bool raw = false;
-  // Of a measurement with spectra: also fits d, s and F of each wavelength, with D and G of the
-  // model (FitBands). An error for one without, where D or G differ by channel, and with
-  // choose_form, which may choose such a form.
+  // For a measurement with spectra: also fits d, s and F of each wavelength, with D and G of the
+  // model (FitBands). An error for a measurement without spectra, if D or G differ by channel, and
+  // with choose_form, which may choose such a form.
   bool bands = false;
   bool compare = true;  // computes the result's appearance, samples_seen, left_out, reach and light
   AppearanceOptions appearance = {};  // num_threads is replaced

@@ -3,7 +3,7 @@
 
 namespace trilobe {
 
-// How well a fit predicts samples that it has not seen (FitOptions::held_out).
+// Error of a fit on samples that it has not seen (FitOptions::held_out).
 struct HeldOutError {
   int samples = 0;
   double objective = 0, relative_objective = 0;  // E of these samples, and over a black model's

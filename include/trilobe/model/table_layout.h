@@ -21,7 +21,7 @@ struct NodeWeights {
 // zeros. `nodes` ascend. Throws Error if there are none.
 NodeWeights WeightsAt(std::span<const int> nodes, int entry);
 
-// Which parameters of a model are stored; the others are interpolated from them. Sharing between
+// The parameters of a model that are stored; the others are interpolated from them. Sharing between
 // lobes or channels belongs to the spec.
 struct TableLayout {
   bool coloured_d = true;  // false: d is the same in all channels, and stored once

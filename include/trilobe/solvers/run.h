@@ -41,7 +41,7 @@ double ExactObjective(const Objective& objective);
 //   return run.Finish();
 class Run {
  public:
-  // What a solver reports of an iteration besides the model.
+  // A solver's report on an iteration, besides the model.
   struct Step {
     bool filtered = false;
     bool accepted = true;

@@ -52,9 +52,9 @@ struct Diagnosis {
   double optimality = 0;
 
   int observed_parameters = 0;  // parameters that affect the value of a sample
-  // Of J with its columns scaled to length 1 and zero columns removed: `rank` is the number of
-  // singular values above `rank_tolerance` times the largest, `condition` the largest of them over
-  // the smallest.
+  // Numerical rank of J with its columns scaled to length 1 and zero columns removed: `rank` is the
+  // number of singular values above `rank_tolerance` times the largest, `condition` the largest of
+  // them over the smallest.
   int rank = 0;
   double rank_tolerance = 0;
   double condition = 0;

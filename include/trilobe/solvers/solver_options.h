@@ -48,7 +48,7 @@ struct StartResult {
   int minimum = 0;       // in which it ended: 1 is the lowest; 0 where minima are not told apart
 };
 
-// How far a solver is that tries several starts, in rounds.
+// Progress of a solver that tries several starts, in rounds.
 struct StartProgress {
   int ended = 0, starts = 0;  // of this round
   int round = 1, rounds = 1;

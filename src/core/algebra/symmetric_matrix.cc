@@ -34,7 +34,7 @@ extern "C" void dsyev_(const char* jobz, const char* uplo, const int* n, double*
 namespace trilobe {
 namespace {
 
-// From row `first` of all n.
+// Solves with the rows and columns of L from `first` on.
 void SolveTriangular(const char* trans, int n, int first, const double* L, int columns, double* B) {
   const int stride = std::max(1, n), rows = n - first;
   int info = 0;

@@ -6,8 +6,8 @@
 
 namespace trilobe {
 
-// By LAPACK for matrices of a few hundred rows, and by tiles for a few thousand. Thread-safe
-// (openblas.h). Matrices are stored column by column.
+// Uses LAPACK for matrices of a few hundred rows, and tiles for a few thousand.
+// Thread-safe (openblas.h). Matrices are stored column by column.
 
 // Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; the upper
 // triangle is neither read nor written. False, and no factor, if it is not positive definite. Large

@@ -17,7 +17,7 @@ std::string WithoutFolders(std::string message, const std::vector<std::string>& 
     if (prefix.empty()) continue;
     prefix += '/';
     for (size_t at = 0; (at = message.find(prefix, at)) != std::string::npos;) {
-      // Not the end of another folder's name.
+      // A match must not be the end of another folder's name.
       if (at == 0 || std::string_view(" '\"(").find(message[at - 1]) != std::string_view::npos) {
         message.erase(at, prefix.size());
       } else {

@@ -87,7 +87,8 @@ Content RecogniseContent(std::string_view bytes) {
 std::string BeginningOf(const std::string& path, size_t size) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return {};
-  // As of ReadFile: some files of the system are regular by name, and would be waited for.
+  // O_NONBLOCK as in ReadFile: some files of the system are regular by name, and would be waited
+  // for.
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return {};
   std::string begin(size, '\0');

@@ -95,7 +95,7 @@ constexpr std::string_view kTemporaryMark = ".trilobe-tmp-";
 constexpr size_t kTemporaryDigits = 16;
 
 std::string TemporaryName(const std::filesystem::path& target) {
-  // So that the whole name does not exceed the limit of file names.
+  // Cut so that the whole name does not exceed the limit of file names.
   const std::string name = target.filename().string().substr(0, 200);
   return target.parent_path() / ("." + name + std::string(kTemporaryMark) + RandomDigits());
 }
@@ -140,7 +140,7 @@ class TemporaryFile {
   bool MayBeOpened() const {
     return faccessat(AT_FDCWD, path_.c_str(), R_OK | W_OK, AT_EACCESS) == 0;
   }
-  // Nameless from now on.
+  // Removes the name; the file lives until it is closed.
   void Unlink() {
     if (!path_.empty()) unlink(path_.c_str());
     path_.clear();
@@ -160,7 +160,7 @@ class TemporaryFile {
   std::string path_;
 };
 
-// Where `path` leads if it is a symbolic link, so that the link survives. Anything but a regular
+// The target of `path` if it is a symbolic link, so that the link survives. Anything but a regular
 // file is refused: renaming over /dev/null would replace the device.
 std::string ResolveTarget(const std::string& path) {
   std::error_code error;

@@ -14,7 +14,8 @@ namespace trilobe {
 inline constexpr size_t kMaxJsonBytes = size_t{1} << 24;
 inline constexpr size_t kMaxJsonValues = size_t{1} << 20;  // keys count, too
 
-// Of files that hold long tables; a value takes 56 bytes of memory.
+// Limits on the size of a text; files with long tables need higher ones. A value takes 56 bytes of
+// memory.
 struct JsonLimits {
   size_t bytes = kMaxJsonBytes, values = kMaxJsonValues;
 };

@@ -71,7 +71,7 @@ bool IsOwnJson(std::string_view bytes) {
 bool IsOwnPage(std::string_view bytes) {
   constexpr size_t kHead = 4096;
   return Has(bytes.substr(0, kHead), R"(<meta name="generator" content="trilobe )") ||
-         // By earlier versions.
+         // Pages of earlier versions.
          Has(bytes, R"(<body class="catalogue">)") || Has(bytes, R"(<body class="study">)");
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kSpace = " \t\r";
 
-// What to show of a cell.
+// The first kLongest bytes of a cell, in quotes.
 std::string Quoted(std::string_view cell) {
   constexpr size_t kLongest = 40;
   std::string quoted = "'";

@@ -41,7 +41,7 @@ class TextLines {
   int number_ = 0;
 };
 
-// Without the white space at its ends.
+// The text without the white space at its ends.
 std::string_view Trimmed(std::string_view text);
 
 // Cells between separators, or words between white space; without white space at their ends.

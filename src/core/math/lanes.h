@@ -154,7 +154,7 @@ TRILOBE_ALWAYS_INLINE Four<Real> AnglesOfSines2(const Four<Real>& sines2) {
   return sines2 > Broadcast<Real>(0.5) ? static_cast<Real>(kPi / 2) - angles : angles;
 }
 
-// One of these.
+// The same for a single angle.
 template <typename Real>
 TRILOBE_ALWAYS_INLINE Real AngleOfSine2(Real sine2) {
   constexpr auto kTerms = ArcSine<Real>::kTerms;

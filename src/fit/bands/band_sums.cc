@@ -82,7 +82,7 @@ QuadraticModel BandSums::Linearized(int band, std::span<const double> y) const {
                     .gradient = std::vector<double>(size, 0.0),
                     .H = std::vector<double>(size * size, 0.0),
                     .squared_lengths = std::vector<double>(size)};
-  // Of each entry of v, the parameters that it is a product of, and its derivatives by these.
+  // For each entry of v: the parameters that it is a product of, and its derivatives by these.
   struct Derivative {
     size_t by;
     double value;

@@ -27,7 +27,7 @@ class BandSums {
   std::vector<FactorModel::Part> Parts() const;
 
   double Value(int band, std::span<const double> y) const;
-  // With J'J in the place of the Hessian.
+  // Quadratic model of E of a band at y, with J'J in the place of the Hessian.
   QuadraticModel Linearized(int band, std::span<const double> y) const;
   // E of a black model. [bands]
   const std::vector<double>& energy() const { return energy_; }

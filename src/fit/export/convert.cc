@@ -103,7 +103,7 @@ std::string WriteTensorFile(const RglExport& file, const std::string& than, doub
   return line;
 }
 
-// As Klems matrices, OpenMATERIAL's or OpticStudio's table, by the ending.
+// Writes Klems matrices, OpenMATERIAL's or OpticStudio's table, by the ending of `path`.
 std::string WriteExported(const ExportedBrdf& brdf, const std::string& than, double max_angle,
                           const ConvertOptions& options, const std::string& path) {
   const auto write = [&](const auto& file, const std::string& what, const std::string& colors) {

@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kPassesBeyond = 10;
 
-// Where albedos are computed [rad]: denser where they rise steeply.
+// Angles at which albedos are computed [rad]: denser where they rise steeply.
 std::vector<double> Angles() {
   std::vector<double> angles;
   for (int degrees = 0; degrees < 60; degrees += 6) angles.push_back(DegreesToRadians(degrees));
@@ -40,7 +40,7 @@ std::vector<double> Angles() {
   return angles;
 }
 
-// At all nodes of G, of which a single one may glow, and halfway between those beyond 60 degrees.
+// All nodes of G, since a single one may glow, and the middles between those beyond 60 degrees.
 std::vector<double> NodesOf(const Axis& g_axis) {
   constexpr double kSteep = DegreesToRadians(60), kLast = DegreesToRadians(89.5);
   std::vector<double> angles;
@@ -52,7 +52,7 @@ std::vector<double> NodesOf(const Axis& g_axis) {
   return angles;
 }
 
-// Linear between the angles.
+// Linear interpolation between the angles.
 double At(double theta, const std::vector<double>& angles, const std::vector<double>& values) {
   const auto after = std::ranges::upper_bound(angles, theta);
   if (after == angles.begin()) return values.front();
@@ -116,7 +116,7 @@ MeasuredAlbedo MeasuredAlbedoOf(const BrdfSamples& samples) {
   return albedo;
 }
 
-// What a model fitted to scattered samples reflects up to the largest angle of these.
+// Albedo of a model fitted to scattered samples, over wo up to the largest angle of these.
 MeasuredAlbedo ModelledAlbedo(const FactorModel& model, double max_theta, int num_threads) {
   constexpr int kLookedAt = 8;
   const PreparedModel<double> prepared(model);
@@ -137,9 +137,9 @@ MeasuredAlbedo ModelledAlbedo(const FactorModel& model, double max_theta, int nu
   return albedo;
 }
 
-// How the directional albedo goes on beyond the data: as its logarithm does over the last cells
-// that are measured nearly as well as any, and levels off as tables do (beyond_data.h). A highlight
-// is cut in the last of them.
+// Continuation of the directional albedo beyond the data: its logarithm goes on as over the last
+// cells that are measured nearly as well as any, and levels off as tables do (beyond_data.h). A
+// highlight is cut in the last of them.
 class ContinuedAlbedo {
  public:
   // `beyond`: the angle from which on it is asked for [rad].
@@ -190,7 +190,7 @@ double LastWellCovered(std::span<const double> coverage, const FactorModel& mode
   return last;
 }
 
-// How much lower G is to be at a stored node, from what the albedo at each angle asks for.
+// Factor of G at a stored node, from the factors that the albedo at each angle asks for.
 using FactorAtNode =
     std::function<double(std::span<const int> nodes, size_t i, const std::vector<double>& factors)>;
 

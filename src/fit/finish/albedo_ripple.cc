@@ -11,7 +11,7 @@
 namespace trilobe {
 namespace {
 
-// Of the value at place j, from -m to m, in the middle of the parabola that is nearest to these.
+// Weight of the value at place j, from -m to m, in the middle of the parabola fitted to them.
 double WeightInParabola(int j, int m) {
   return 3.0 * (3 * m * m + 3 * m - 1 - 5 * j * j) / ((2 * m - 1) * (2 * m + 1) * (2 * m + 3));
 }

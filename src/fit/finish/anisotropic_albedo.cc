@@ -39,7 +39,7 @@ std::vector<Rgb> AlbedosAt(const FactorModel& model, std::span<const PolarAngles
   return albedos;
 }
 
-// Where albedos are computed: thetas, ascending, at each azimuth.
+// Incidences at which albedos are computed: thetas, ascending, at each azimuth.
 class Incidences {
  public:
   explicit Incidences(const Axis& g_axis) {

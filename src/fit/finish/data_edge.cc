@@ -22,8 +22,8 @@ constexpr int kSteps = 12;
 constexpr double kSmallDecrease = 1e-3;
 constexpr double kMaxRise = 0.05;
 
-// From which entry on the observed ones [0, end) are to be tied because few samples read them;
-// `end` where data go on to the end of the table.
+// First of the observed entries [0, end) that are to be tied because few samples read them; `end`
+// if the data go on to the end of the table.
 int FirstUncovered(std::span<const double> coverage, int end) {
   if (end == static_cast<int>(coverage.size())) return end;
   int first = end;
@@ -31,8 +31,8 @@ int FirstUncovered(std::span<const double> coverage, int end) {
   return first;
 }
 
-// From which entry on they run away: the first in the last third that is several times the median
-// of those before it.
+// First entry that runs away: the first in the last third that is several times the median of those
+// before it; `end` if none does.
 int FirstRunaway(std::span<const double> table, int end) {
   for (int k = std::max(2 * end / 3, kLookedAt); k < end; ++k) {
     std::vector<double> before(table.begin() + k - kLookedAt, table.begin() + k);
@@ -44,8 +44,8 @@ int FirstRunaway(std::span<const double> table, int end) {
 
 enum class Rule { kBoth, kCoverage };
 
-// How many entries of a table remain, from the first on, when those at its end are tied; all where
-// none is to be tied.
+// Number of entries of a table that remain, from the first on, when those at its end are tied; all
+// if none is to be tied.
 int NumKept(Rule rule, std::span<const double> coverage, std::span<const double> table) {
   const auto size = static_cast<int>(coverage.size());
   const auto unobserved = [&](int entry) { return !(coverage[entry] > 0); };
@@ -94,7 +94,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
     if (!stepper.Step()) continue;
     if (refit == TieRefit::kUntilBack && stepper.E() <= enough) break;
     const double decrease = before - stepper.E();
-    // As much again in each step that is left would not bring E back.
+    // The same decrease in each step that is left would not bring E back.
     const bool hopeless = stepper.E() - (kSteps - 1 - step) * decrease > enough;
     if (hopeless || decrease < kSmallDecrease * before) break;
   }
@@ -109,7 +109,7 @@ bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model, const 
                           TieRefit refit) {
   CheckSameSpec(model->spec(), objective.spec());
   CheckParameters(*model);
-  // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the
+  // If tying raises E too much, less is tried: at least nodes of G beyond the data, which only the
   // spline reads.
   const auto tie = [&](Rule rule, std::initializer_list<Factor> factors) {
     return Tie(rule, factors, objective, stop, refit, model);

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// How much light a model of the data may reflect, isotropic or not (LimitAlbedo,
+// Limit of the light that a model of the data may reflect, isotropic or not (LimitAlbedo,
 // LimitAnisotropicAlbedo).
 class LightLimit {
  public:

@@ -11,15 +11,15 @@
 
 namespace trilobe {
 
-// What lowers G of isotropic and of anisotropic models that reflect too much light.
+// Most passes that lower G of a model that reflects too much light, isotropic or anisotropic.
 constexpr int kPassesOfG = 40;
 
-// How much lower G is to be where an albedo exceeds its limit by more than a thousandth: by the
-// root of the excess over what is diffuse, since both G(theta_i) and G(theta_o) make a highlight. 1
-// where it does not.
+// Factor by which G is to be lowered where an albedo exceeds its limit by more than a thousandth:
+// the root of limit over albedo, both less the diffuse part, since both G(theta_i) and G(theta_o)
+// make a highlight. 1 elsewhere.
 double FactorOfG(const Rgb& albedo, const Rgb& limit, std::span<const double> d);
 
-// The factor that each of these angles asks for. [angles.size()]
+// Factor that each of these angles asks for. [angles.size()]
 using FactorsAt = std::function<std::vector<double>(std::span<const size_t> angles)>;
 // Lowers G, by the factors that all angles ask for. [end]
 using LowerBy = std::function<void(const std::vector<double>& factors)>;

@@ -60,7 +60,7 @@ class SampledLight {
     for (double& x : measured_) x /= through_;
   }
 
-  // Of a model with the objective's spec. The same bits for any number of threads.
+  // Light and slopes of a model with the objective's spec. The same bits for any number of threads.
   Light Evaluate(const FactorModel& model, Slopes slopes) const {
     const int num_parameters = slopes == Slopes::kAll ? spec_.num_parameters() : 0;
     std::vector<Light> parts(kParts);

@@ -39,7 +39,7 @@ class ReflectancePrice : public AddedTerm {
   ~ReflectancePrice() override;
 
   double operator()(const FactorModel& model) const override;
-  // Gauss-Newton.
+  // Adds value and derivatives, the second ones by Gauss-Newton.
   void AddTo(const FactorModel& model, QuadraticModel* at) const override;
 
  private:

@@ -43,7 +43,7 @@ std::optional<SmoothedModel> Smoothest(const Objective& objective, const FactorM
     if (!little && ++with_this < kStepsWithOne) continue;
     const double rise = stepper.E() / least - 1;
     if (rise >= kLeastOfShare * share && rise <= share) break;
-    // As if the rise were in proportion to lambda, which it is at most.
+    // Assumes that the rise is in proportion to lambda; it grows no faster.
     const double change = kAim * share / std::max(rise, share / kMaxChange);
     stiffness *= std::clamp(change, 1 / kMaxChange, kMaxChange);
     stepper.set_stiffness(stiffness);

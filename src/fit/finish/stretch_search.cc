@@ -36,7 +36,7 @@ Stretches StretchesOf(const Vector& e) {
   return Stretches(stretches);
 }
 
-// What the exponents add to the normal equations at a model.
+// Terms of the exponents in the normal equations at a model.
 struct ExponentEquations {
   Vector K_r;  // K'r. [exponents]
   Vector K_K;  // [exponents][exponents]
@@ -89,7 +89,7 @@ class ExponentDerivatives {
   std::vector<Stencil> higher_, lower_;
 };
 
-// Of samples [begin, end).
+// Sums over samples [begin, end).
 ExponentEquations SumsOver(const Objective& objective, const FactorModel& model, int begin,
                            int end) {
   ExponentDerivatives exponents(model);
@@ -226,7 +226,7 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
   constexpr double kMaxStep = 0.4;  // of an exponent
   constexpr double kMinLambda = 1e-4;
   constexpr double kSmall = 3e-3;  // a decrease of E, relative, that ends the search
-  // Where the samples are prepared for the stretches of the best point, steps from it are, too.
+  // Samples prepared for the stretches of the best point, from which steps begin.
   Objective at_best(objective, fitted.spec());
   SteppedModel best = JointSteps(at_best, fitted, kJointSteps, stop);
   double lambda = 1e-2;
@@ -249,7 +249,8 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
       rejected = 0;
       if (small) break;
     } else {
-      // From where they are, joint steps lower E in any case once the exponents hardly move.
+      // With the parameters left as they are, joint steps lower E in any case once the exponents
+      // hardly move.
       if (follow == 0) lambda *= 8;
       follow = 0;
       ++rejected;

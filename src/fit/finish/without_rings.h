@@ -10,10 +10,10 @@
 
 namespace trilobe {
 
-// What a picture may lose for a model without rings, which are seen sooner [dB].
+// PSNR that a picture may lose for a model without rings, which are seen sooner [dB].
 inline constexpr double kMayLoseForRings = 0.5;
 
-// Whether even light shows rings on a sphere (RippleOf).
+// Whether uniform light shows rings on a sphere (RippleOf).
 bool HasRings(const FactorModel& model, int num_threads);
 
 // A model without rings, if this one has some: E knows values at the centers of bins alone, so it

@@ -17,7 +17,7 @@
 namespace trilobe {
 namespace {
 
-// Of many samples, some; these need no prior. One of colours has no spectra.
+// Some of the samples if there are many; these need no prior. A prior of colours has no spectra.
 Objective SomeOf(const FitProblem& problem, bool bands, int num_parameters) {
   constexpr int kMost = 100'000;
   if (problem.solved().num_samples() <= kMost) return bands ? problem.data : problem.solved();

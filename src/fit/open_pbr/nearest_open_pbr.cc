@@ -61,9 +61,9 @@ OpenPbr Unpack(const double* x, const OpenPbr& start, bool anisotropic) {
   return m;
 }
 
-// --- What is compared ----------------------------------------------------------------------------
+// --- Comparison ----------------------------------------------------------------------------------
 
-// Sums of BRDF times light, each compared with what it is of the model.
+// Sums of BRDF times light, each compared with that of the model.
 struct Sums {
   struct Term {
     DirectionPair pair;
@@ -85,7 +85,7 @@ struct Sums {
       for (double& x : exposed) x = x > 1 ? std::sqrt(x) : x;
       return ToLab(exposed);
     }
-    // Of nothing the cube root has no slope.
+    // The offset limits the slope of the cube root at 0.
     for (double& x : exposed) x = std::cbrt(x + 1e-3);
     return exposed;
   }
@@ -123,7 +123,7 @@ class SumsCost : public ceres::CostFunction {
     ParallelFor(static_cast<int>(seen.size()), num_threads_, [&](int k) {
       std::vector<double> x(parameters[0], parameters[0] + size);
       if (k > 0) {
-        // Towards the inside.
+        // Differences towards the middle of the bounds.
         constexpr double kStep = 1e-5;
         const double middle = (kBounds[k - 1].least + kBounds[k - 1].most) / 2;
         steps[k - 1] = x[k - 1] > middle ? -kStep : kStep;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kCosines = 16;  // of albedos: (k + 1/2) / 16
 
-// Of unpolarised light at an interface, from outside.
+// Fresnel reflectance of an interface for unpolarised light from outside.
 double DielectricFresnel(double cosine, double ior) {
   const double sin2 = 1 - cosine * cosine;
   const double below = std::sqrt(std::max(ior * ior - sin2, 0.0));
@@ -118,7 +118,7 @@ double OpenPbrBrdf::At(const std::vector<double>& table, double cosine) {
   return table[k] + (x - k) * (table[k + 1] - table[k]);
 }
 
-// By half vectors drawn from those that are visible (Heitz 2018), whose weights are
+// Integrates over half vectors drawn from the visible ones (Heitz 2018), whose weights are
 // F G2 / G1, the mean over both axes.
 void OpenPbrBrdf::Ggx::SetTables() {
   constexpr int kAcross = 8, kAround = 6;

@@ -31,7 +31,7 @@ uint64_t Mix(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// By the vector to 1e-6, in which all azimuths of the normal are one direction.
+// Hash of the vector, rounded to 1e-6, in which all azimuths of the normal are one direction.
 uint64_t HashOf(const Direction& direction, uint64_t seed) {
   uint64_t hash = seed;
   for (const double x : direction) {
@@ -126,7 +126,7 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
     tried.error = judged.Value(*model) / judged.MeasuredEnergy();
     tried.seconds = of_this.Seconds();
     const int last = static_cast<int>(choice.tried.size()) - 1;
-    // What was stopped half-way says nothing against the one before.
+    // An interrupted fit says nothing against the candidate before.
     if (last > 0 && (summary.stop_reason == StopReason::kInterrupted ||
                      !(tried.error < kWorthwhile * choice.tried[choice.chosen].error))) {
       break;

@@ -25,24 +25,23 @@ namespace trilobe {
 namespace {
 
 constexpr int kDataPerSample = 6;  // samples of the data for one of the prior
-// Where these are fewer than kFew for each of the model's parameters, there are kEnough for each,
-// which then count less: few data leave many parameters to the prior.
+// If these are fewer than kFew per parameter of the model, there are kEnough per parameter, which
+// then count less: few data leave many parameters to the prior.
 constexpr int kFew = 3, kEnough = 6;
-// Of few data, too, it says no more than so many times the largest value.
+// With few data, values of the prior are limited to this multiple of the largest measured value.
 constexpr double kMaxOfLargest = 2;
-// A fit that says more than so many times the largest value, where the prior may say half of it at
-// most, overshoots.
+// A fit overshoots if it exceeds this multiple of the largest value, of which the prior may say
+// half at most.
 constexpr double kOvershoot = 2 * kMaxOfLargest;
-// With fewer samples than so many for each parameter of a prior it needs one itself, on fewer
-// nodes.
+// With fewer samples than this per parameter of a prior, it needs one itself, on fewer nodes.
 constexpr int kSamplesPerParameter = 5;
 
-// A second lobe is worth its parameters where it leaves less than this of E: 0.03 and 0.25 where
+// A second lobe is worth its parameters if it leaves less than this share of E: 0.03 and 0.25 where
 // two kinds of threads, or a coat and its base, reflect; 0.49 and more elsewhere, where it gains 2
 // dB between the samples at most and may lose 22 (docs/anisotropic.md).
 constexpr double kWorthALobe = 0.4;
 
-// What a prior is where azimuths were measured, and where not.
+// Forms, start and weight of a prior, with and without measured azimuths.
 struct PriorKind {
   std::vector<ModelSpec> specs;  // of one lobe, from fine to coarse
   const char* start;
@@ -87,7 +86,7 @@ struct PriorModel {
   const NodeBrdf* residual = nullptr;
 };
 
-// What it says at these directions.
+// Samples of the prior at these directions.
 BrdfSamples SamplesOf(const PriorModel& prior, std::vector<SphericalAngles> directions,
                       const BrdfSamples& measured, int num_threads) {
   BrdfSamples added;
@@ -117,7 +116,7 @@ std::vector<SphericalAngles> FindDirectionsAbove(double times, const Objective& 
                          with_prior.num_threads());
 }
 
-// What `prior` says between the samples of the data, enough for a model of so many parameters.
+// Samples of `prior` between those of the data, enough for a model of so many parameters.
 BrdfSamples SamplesBetween(const PriorModel& prior, const Objective& data, int num_parameters,
                            double weight) {
   const BrdfSamples& measured = data.samples();
@@ -163,11 +162,11 @@ FactorModel FitPrior(const PriorKind& kind, size_t number, const Objective& data
   return model;
 }
 
-// With two lobes, if they are worth it.
+// Replaces the model by one with two lobes, if they are worth it.
 void TryTwoLobes(PriorKind* kind, const Objective& data, const StopCheck& stop,
                  FactorModel* model) {
   for (ModelSpec& spec : kind->specs) spec.lobes = 2;
-  // Of few samples it would follow the noise.
+  // With few samples the second lobe would follow the noise.
   if (data.samples().size() < kSamplesPerParameter * kind->specs.front().num_parameters()) return;
   FactorModel two = FitPrior(*kind, 0, data, stop);
   const auto E = [&](const FactorModel& fitted) {

@@ -18,13 +18,14 @@ namespace {
 constexpr StartElimination::Thinning kThinning{.samples_per_parameter = 100, .max_stride = 8};
 // Steps of each start on thinned samples, and of the best two, so many at a time.
 constexpr int kFirstTries = 3, kLeg = 3, kLastTries = 12;
-// On all samples.
+// Most steps on all samples.
 constexpr int kMaxTries = 40;
 // A fit is given up when at its present pace it needs more steps than this to come down to its
 // goal.
 constexpr int kPatience = 12;
 
-// Without the tables of the lobe `gone`; those of `heir` have its nodes besides their own.
+// The layout without the tables of the lobe `gone`; those of `heir` have its nodes besides their
+// own.
 TableLayout LayoutWithout(const ModelSpec& spec, const TableLayout& layout, int gone, int heir) {
   TableLayout fewer = layout;
   for (const Factor factor : kFactors) {

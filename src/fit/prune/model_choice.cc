@@ -31,13 +31,13 @@
 namespace trilobe {
 namespace {
 
-// What nobody sees of a picture [dB].
+// Loss of PSNR that nobody sees in a picture [dB].
 constexpr double kNotSeen = 0.2;
 
-// A stretch that lowers E by less than this fraction is none.
+// Least relative decrease of E for which a stretch is kept.
 constexpr double kWorthwhile = 0.05;
 
-// What thinning cannot go below: a node a table, besides d, s and exponents.
+// Fewest parameters that thinning can leave: a node per table, besides d, s and exponents.
 int LeastStored(const ModelSpec& spec) {
   TableLayout layout = TableLayout::Full(spec);
   for (const Factor factor : kFactors) {
@@ -50,8 +50,8 @@ Objective Thinned(const Objective& objective, const SampleThinning& thinning) {
   return ThinnedObjective(objective, objective.spec().num_parameters(), thinning);
 }
 
-// Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
-// read may be anything.
+// Continues a fit to few samples by joint steps on more: an entry that the few hardly read may be
+// anything.
 FactorModel ContinueFit(const Objective& objective, const FactorModel& start, const StopCheck& stop,
                         const Reduction* reduction = nullptr) {
   constexpr int kSteps = 2;
@@ -124,7 +124,7 @@ class ModelSearch {
                double E) {
     const double seconds = stopwatch_.Lap();
     double score = options_.judge(model);
-    // Below all others, with which NaN has no order.
+    // NaN has no order: it ranks below all others.
     if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
     best_.candidates.push_back({.name = name,
                                 .num_parameters = layout.num_parameters(model.spec()),
@@ -192,7 +192,7 @@ class ModelSearch {
     pruned.model = ContinueFit(refitted, pruned.model, options_.stop, &stored);
     // Nodes that were chosen by E, with the values of the form.
     if (!of_fit && HasRings(pruned.model, objective_.num_threads())) pruned.model = model;
-    // By what was measured, without the prior.
+    // Scale by what was measured, without the prior.
     const Objective measured = some_.ObjectiveFor(pruned.model.spec(), weighting);
     SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
     ExpandStored(pruned.layout, &pruned.model);
@@ -233,7 +233,7 @@ class ModelSearch {
     return true;
   }
 
-  // What the forms go on from: the fit itself, stretched, and weighed by channel.
+  // Fits the bases of the forms: the fit itself, stretched, and weighed by channel.
   bool FitBases() {
     bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
     return FitStretchedBase() && FitBasesByChannel();
@@ -272,7 +272,7 @@ class ModelSearch {
     return true;
   }
 
-  // Where pictures show what weights by the mean of the channels hide.
+  // Fits bases weighed by channel if weights by the mean of the channels hide what pictures show.
   bool FitBasesByChannel() {
     if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
       return true;
@@ -286,7 +286,7 @@ class ModelSearch {
       if (!Fit(form)) return false;
       bases_.push_back(forms_.back());
     }
-    // From starts of its own, since it ends in another minimum.
+    // Starts of its own, since it ends in another minimum.
     ModelForm form{"weighed by channel anew",
                    FitBySolver("auto", few_with_prior_.ObjectiveFor(fitted_.spec(), by_channel),
                                fitted_, options_.stop),
@@ -301,9 +301,9 @@ class ModelSearch {
     return true;
   }
 
-  // Of the best base, and any within 2 dB of it, the form that shares neither F nor D; then the
-  // best of all these with a lobe more. The more nodes there are to choose from, the better those
-  // that thinning leaves.
+  // From the best base, and any within 2 dB of it, fits the form that shares neither F nor D; then
+  // the best of all these with one more lobe. The more nodes there are to choose from, the better
+  // those that thinning leaves.
   bool FitForms() {
     constexpr double kNearly = 2;  // [dB]
     const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;

@@ -210,7 +210,7 @@ double Tableau::Pivot(int k) {
     T_[i * stride_ + k] = T_[k * stride_ + i] = t[i] * scale;
   }
   T_[k * stride_ + k] = -1 / pivot;
-  // What waits has nothing to add there.
+  // Pending updates have nothing to add there.
   std::fill_n(U_.begin() + k * kMaxWaiting, kMaxWaiting, 0.0);
   std::fill_n(V_.begin() + k * kMaxWaiting, kMaxWaiting, 0.0);
   h_[k] = h_k * scale;
@@ -230,7 +230,7 @@ double Tableau::Rise(const Constraint& c) const {
   const int first = c.begin()->row;
   double release = 0;
   if (!free_[first]) {
-    // Where it would go below 0 the others of the constraint have to be 0 with it.
+    // If it would go below 0, the others of the constraint have to be 0 with it.
     const double sigma = -At(first, first);
     double follow = c.begin()->factor;
     for (const Term& a : c) {

@@ -18,15 +18,15 @@
 namespace trilobe {
 namespace {
 
-// Where lobes that went took more than this share of the budget, it may be better spent on nodes.
+// If the removal of lobes took more than this share of the budget, nodes may be a better use of it.
 constexpr double kDear = 0.5;
 
-// Towards a limit of the error: so often, and by this factor, the rise of E that is allowed grows.
+// Until the error reaches its limit, the allowed rise of E grows kStretches times by kStretch.
 constexpr int kStretches = 4;
 constexpr double kStretch = 3;
 constexpr double kLittleMore = 1.25;
 
-// Of E, which no picture shows.
+// Relative decrease of E that no picture shows.
 constexpr double kLittleUnseen = 0.02;
 
 // The first shape that changes no parameter.
@@ -75,7 +75,7 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
                   true, "they change no value");
 }
 
-// Where a fit of lobes begins, and what is stored of it.
+// Start of a fit of lobes, and what is stored of it.
 struct LobeStart {
   FactorModel model;
   TableLayout layout;
@@ -90,7 +90,7 @@ std::vector<LobeStart> LobeStarts(std::vector<FactorModel> models) {
   return starts;
 }
 
-// Of a model that came thinned on the nodes that it has.
+// Starts with one lobe less; a model that came thinned keeps its nodes.
 std::vector<LobeStart> WithOneLobeLess(const Pruning& pruning) {
   const PruneState& state = pruning.state();
   std::vector<LobeStart> starts = LobeStarts(WithOneLobeLess(state.model));
@@ -103,10 +103,10 @@ std::vector<LobeStart> WithOneLobeLess(const Pruning& pruning) {
   return starts;
 }
 
-// The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
+// The best fit from these starts. Those whose lobes have other stretches are fitted apart.
 PruneState FitLobes(std::vector<LobeStart> starts, double wanted, const Pruning& pruning) {
   FitGoal goal{.E = pruning.GoalOfFits(wanted)};
-  // Where E only leads to what is seen, the last of it is not worth its time.
+  // If E is only a guide to what is seen, the last of it is not worth its time.
   if (pruning.options().error) goal.least_gain = kLittleUnseen;
   PruneState best{};
   while (!starts.empty() && !(best.objective != nullptr && pruning.options().stop())) {
@@ -133,7 +133,7 @@ PruneState FitLobes(std::vector<LobeStart> starts, double wanted, const Pruning&
   return best;
 }
 
-// What a lobe more is tried for, and what comes of it.
+// Reason for trying one more lobe, and the outcome.
 std::string WhyAdded(const Pruning& pruning, double E, bool taken, bool within) {
   const int lobes = pruning.state().lobes();
   const std::string reason = pruning.by_parameters()
@@ -144,7 +144,7 @@ std::string WhyAdded(const Pruning& pruning, double E, bool taken, bool within) 
   return reason + "; " + comes_of_it;
 }
 
-// Whether a lobe more takes a tenth off what the budget is missed by, or off E where parameters are
+// Whether one more lobe takes a tenth off the excess over the budget, or lowers E if parameters are
 // the budget.
 bool IsWorthALobe(const Pruning& pruning, const PruneState& next) {
   constexpr double kShare = 0.1;
@@ -182,9 +182,9 @@ bool SparesError(const Pruning& pruning) {
   return pruning.ErrorOf(pruning.state()) < half;
 }
 
-// Shape and nodes.
+// Chooses the shape, then the nodes.
 void ThinWithin(double limit, Pruning* pruning) {
-  // Of an error that is seen, E tells little: a few nodes more are tried in any case.
+  // E tells little about an error that is seen: a few nodes more are tried in any case.
   const double least = pruning->options().error ? kLittleMore : 1;
   pruning->set_search_limit(
       std::min(pruning->limit(), std::max(limit, least * pruning->state().E)));
@@ -200,7 +200,7 @@ void ThinWithin(double limit, Pruning* pruning) {
   }
 }
 
-// With as few lobes as the budget allows; and with one more where that took most of it.
+// Thins with as few lobes as the budget allows; and with one more if that took most of it.
 void SpendBudget(Pruning* pruning) {
   const PruneState& state = pruning->state();
   // The search limit says nothing about an error far away, so that E may rise beyond it here.

@@ -49,7 +49,7 @@ std::string NodesText(const Axis& axis) {
   return std::to_string(axis.theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes";
 }
 
-// With D or G on another axis.
+// The model with D or G on another axis.
 Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
   ModelSpec spec = model.spec();
   const std::string what = std::string(FactorName(factor)) + " on " + NodesText(axis) +
@@ -58,8 +58,8 @@ Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
   return {what, {WithAxes(model, spec)}};
 }
 
-// With this share of the phi of D or G: an even number, as most materials look the same turned by
-// 180 degrees.
+// The model with this share of the phi of D or G: an even number, as most materials look the same
+// turned by 180 degrees.
 std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, double share) {
   const Axis& axis = model.spec().axis(factor);
   const int fewer = std::max(2 * static_cast<int>(share * axis.phi_nodes / 2), kFewestPhi);
@@ -67,7 +67,7 @@ std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, d
   return OnAxis(model, factor, Axis::Polar(axis.theta, fewer));
 }
 
-// Without every sixth theta of D or G, ends apart, and those towards the horizon.
+// The model without every sixth theta of D or G, ends apart, and those towards the horizon.
 std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor) {
   const Axis& all = model.spec().axis(factor);
   const Axis axis = all.WithoutHorizon();
@@ -159,7 +159,7 @@ class AnisotropicPruning {
     return pruning_.Decide(what, std::move(next), within && !stopped(), why);
   }
 
-  // As long as it keeps within the budget.
+  // Applies each reduction as long as the budget is kept.
   void ReduceWhatThereIs() {
     for (const Reduce& reduce : Reductions(options_)) {
       while (!stopped()) {
@@ -169,7 +169,7 @@ class AnisotropicPruning {
     }
   }
 
-  // Until so few parameters are left, each time what raises E least for what it saves.
+  // Reduces to this many parameters, each time by what raises E least per parameter saved.
   void ReduceTo(int max_parameters) {
     while (!stopped() && state().num_parameters() > max_parameters) {
       std::optional<std::pair<std::string, PruneState>> best;
@@ -201,7 +201,7 @@ class AnisotropicPruning {
   }
 
  private:
-  // Where E with the prior is to go for that of the measured ones to go where it may.
+  // Target of E with the prior at which E of the measured samples reaches its own.
   double Wanted() const {
     if (pruning_.by_parameters()) return 0;  // nothing can be given up: a few steps tell enough
     if (pruning_.IsExact(pruning_.E_base())) return pruning_.search_limit();

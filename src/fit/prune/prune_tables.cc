@@ -19,21 +19,21 @@
 namespace trilobe {
 namespace {
 
-// Of the fit in the parameters that are left: it ends when a step gains less than this fraction of
-// the budget, or of E where E is what counts; and when so many times what the last step gained
-// would not bring it down to the budget.
+// Refits of the remaining parameters end when a step gains less than kSmallGain of the budget, or
+// kSmallOfE of E for a budget of parameters; and when kHope times the last gain would not bring E
+// down to the budget.
 constexpr int kMaxPolish = 8, kHope = 4;
 constexpr double kSmallGain = 0.02, kSmallOfE = 1e-4;
 
-// Giving up nodes and refitting, again and again from where that led: what the errors of the
-// quadratic left of the budget is spent the next time. Where they were too large, a part of it is
-// tried, which grows again. It ends when few parameters went for all that was left.
+// Nodes are given up and the others refitted, again and again from the result: the part of the
+// budget that errors of the quadratic leave is spent the next time. If they were too large, a
+// smaller part is tried, which grows again. Ends when all that is left buys few parameters.
 constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
 constexpr double kFewParameters = 0.04, kFirstBite = 0.25;
 
-// Towards a budget of parameters: this part of those in excess goes at once, if they are more than
-// few.
+// For a budget of parameters: share of the excess that is removed at once, if that is more than
+// kFewInExcess.
 constexpr double kExcessAtOnce = 0.75;
 constexpr int kFewInExcess = 10;
 
@@ -76,7 +76,7 @@ bool WithinBudget(const Pruning& pruning, const PruneState& next) {
          (next.E <= pruning.search_limit() && pruning.KeepsToBudget(next));
 }
 
-// A shape, with the parameters that would be best by the quadratic.
+// A shape, with the parameters that are best by the quadratic.
 struct ShapeOption {
   ModelShape shape;
   TableLayout layout;
@@ -85,7 +85,7 @@ struct ShapeOption {
   int num_parameters = 0;  // then
 };
 
-// What a shape promises; nothing if it is beyond the budget.
+// Predicted result of a shape; nothing if it is beyond the budget.
 std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& shape,
                                    const QuadraticModel& at) {
   const PruneState& state = pruning.state();
@@ -149,14 +149,14 @@ PruneState RemoveNodes(const Pruning& pruning, const std::vector<Elimination>& o
   return next;
 }
 
-// How many nodes go before E has risen by more than this, but one.
+// Number of eliminations with a rise of at most `rise`, at least 1.
 int CountWithin(const std::vector<Elimination>& order, double rise) {
   const auto end = std::ranges::upper_bound(order, rise, {}, &Elimination::rise);
   return std::max(1, static_cast<int>(end - order.begin()));
 }
 
-// Of the way from one state to another that is beyond the budget, the part that keeps to it: E
-// rises evenly along it, and so does the square of an error.
+// Share of the way from one state to another, beyond the budget, that keeps to it: E rises evenly
+// along the way, and so does the square of an error.
 double ShareWithin(const Pruning& pruning, const PruneState& from, const PruneState& next) {
   const double of_E = (pruning.search_limit() - from.E) / (next.E - from.E);
   if (!pruning.limits_error()) return of_E;
@@ -170,7 +170,8 @@ double ShareWithin(const Pruning& pruning, const PruneState& from, const PruneSt
 // Gives up nodes as long as many go at once.
 void ThinQuickly(Pruning* pruning) {
   const bool by_parameters = pruning->by_parameters();
-  // Of what is left, to be spent next: less where predictions are too low, as of what is seen.
+  // Share of the remaining budget to spend next: less if predictions are too low, as for visible
+  // errors.
   double share = pruning->options().error ? kFirstBite : 1;
   for (int attempt = 0; attempt < kMaxAttempts && !pruning->options().stop();) {
     const PruneState from = pruning->state();
@@ -224,8 +225,8 @@ void ThinSingly(Pruning* pruning) {
   }
 }
 
-// Where an error is limited, E only leads the way. So the error grows in stages: what a tighter
-// budget could do without, a looser one does without, too.
+// If an error is limited, E is only a guide. So the error grows in stages: what a tighter budget
+// can do without, a looser one can, too.
 void ThinByStages(Pruning* pruning) {
   constexpr double kStages[] = {0.4, 1};
   constexpr double kRoom = 3;  // for E, of what it is
@@ -261,7 +262,7 @@ void ChooseShape(Pruning* pruning) {
   std::vector<ShapeOption> options;
   for (std::optional<ShapeOption>& option : promised) {
     if (!option) continue;
-    // Where no other is within the budget, it stays.
+    // If no other shape is within the budget, the present one stays.
     if (option->shape.name.empty() && options.empty()) return;
     options.push_back(*std::move(option));
   }

@@ -17,12 +17,12 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // of E
 
-// Of E of a black model: so little that nothing can be relative to it.
+// Share of the E of a black model that is too little for anything to be relative to it.
 constexpr double kPracticallyZero = 1e-9;
-// Of the same: what a good fit of a measurement comes to.
+// E of a good fit to a measurement, relative to that of a black model.
 constexpr double kGoodFit = 1e-4;
 
-// The measure of PSNR that is 0 where a model is right.
+// An error by PSNR that is 0 for an exact model.
 double ErrorByPsnr(const PruneState& state) {
   return std::pow(10, -ScoreModel(*state.data, state.model).psnr_db / 20);
 }
@@ -58,14 +58,14 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
   limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
   if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(data));
   search_limit_ = limit_;
-  // Where E is the squared error, that grows by as much at this E; elsewhere it is a start.
+  // If E is the squared error, that reaches its limit at this E; else this is a start.
   if (options.error) {
     error_ = [this](const PruneState& state) { return options_.error(state.model); };
     base_error_ = ErrorOf(state_);
     max_error_ = options.max_error;
     const double growth = base_error_ > 0 ? max_error_ / base_error_ : kInfinity;
     search_limit_ = growth * growth * E_full_;
-    // Of an exact model no multiple says anything: then the E of a good fit is where to begin.
+    // A multiple of the E of an exact model says nothing: the search begins at the E of a good fit.
     if (IsExact(E_full_)) search_limit_ = std::max(search_limit_, kGoodFit * data.MeasuredEnergy());
     search_limit_ = std::min({limit_, search_limit_, data.MeasuredEnergy()});
   } else if (std::isfinite(options.max_psnr_drop_db)) {
@@ -191,8 +191,8 @@ PrunedModel Pruning::Result(LobeOrder order) const {
   } else {
     Canonicalize(*state_.objective, &result.model, order);
     ExpandStored(result.layout, &result.model);
-    // What tables are beyond their last nodes counts in the integral of D; and samples of a prior
-    // say what is read, but not what was measured.
+    // Values beyond the last nodes of tables count in the integral of D. Coverage is by the data
+    // alone: samples of a prior are read, but not measured.
     SetCanonicalScale(state_.data->coverage(), &result.model, state_.data->num_threads());
     ExpandStored(result.layout, &result.model);
   }

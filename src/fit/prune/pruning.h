@@ -24,7 +24,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // "no lobe", "one lobe", "2 lobes".
 std::string LobesText(int lobes);
 
-// What a plan says where no form meets the budget (SettleForState).
+// Texts of a plan if no form meets the budget (SettleForState).
 inline constexpr const char* kWithinBudget = "a fit within the budget";
 inline constexpr const char* kSoughtInstead =
     "the smallest that is within 10 % of the best was sought instead";
@@ -90,10 +90,10 @@ class Pruning {
   void set_max_error(double error) { max_error_ = error; }
   // Whether a state's E and error are within the budget.
   bool KeepsToBudget(const PruneState& state) const;
-  // What is limited: the error, or else E.
+  // Limited quantity: the error, or else E.
   double Cost(const PruneState& state) const { return error_ ? error_(state) : state.E; }
   double max_cost() const { return error_ ? max_error_ : limit_; }
-  // Of the same for a budget that nothing meets: it becomes the state's cost and a tenth more.
+  // Replaces a budget that nothing meets by 1.1 times the state's cost.
   void SettleForState();
   bool misses_budget() const { return misses_budget_; }
   // Text that compares E with the full model's.
@@ -110,7 +110,7 @@ class Pruning {
   void Withdraw(size_t begin, size_t end, const std::string& why);
 
  private:
-  // After a step to a better state than what was settled for, which may even meet the budget.
+  // Settles for the state after a step to a better one, which may even meet the budget.
   void SettleForBetter();
 
   const Objective &data_, &objective_;

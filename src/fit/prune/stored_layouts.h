@@ -24,7 +24,7 @@ TableLayout NeededLayout(const FactorModel& model, TableLayout stored,
 TableLayout NeededLayout(const FactorModel& model, std::span<const double> coverage,
                          const ThinnedFactors& may_thin, bool drop_equal);
 
-// What lobes and channels share, regardless of the nodes of the tables.
+// Sharing by lobes and channels, regardless of the nodes of the tables.
 struct ModelShape {
   std::string name;  // names the additional sharing; empty for a model's own shape
   ModelSpec spec;

@@ -14,10 +14,10 @@
 namespace trilobe {
 namespace {
 
-// Of what it says of a bin, where a measured one counts 1; of directions beyond samples on no grid,
-// where 0.01 costs 1.5 dB where data are (docs/decisions/forms.md).
+// Weight of its value at a bin, where a measured one counts 1; and at directions beyond samples on
+// no grid, where 0.01 costs 1.5 dB where data are (docs/decisions/forms.md).
 constexpr double kWeight = 0.01, kWeightOfScattered = 0.001;
-// Said for so many bins, but by so many samples at least of each theta_h, theta_d, theta_i and
+// One bin in kStride gets a value, but about kLeast at least for each theta_h, theta_d, theta_i and
 // theta_o.
 constexpr int kStride = 32, kLeast = 64;
 constexpr double kAbsurd = 100;    // times the largest value that was measured
@@ -44,7 +44,7 @@ std::vector<SphericalAngles> DirectionsBeyond(const BrdfSamples& measured) {
   return pairs;
 }
 
-// Scattered ones.
+// Appends scattered samples.
 BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added) {
   const auto append = [](const auto& from, auto* target) {
     target->insert(target->end(), from.begin(), from.end());

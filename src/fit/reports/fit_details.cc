@@ -62,7 +62,7 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
   return array;
 }
 
-// What followed the solver, in order.
+// Finishing steps after the solver, in order.
 Json FinishingJson(const FitReport::Finished& finished) {
   Json array = Json::array();
   for (const FinishingStep& step : finished.steps) {
@@ -97,7 +97,7 @@ Json ToJson(const NodeChoice& choice) {
           {"tried", tried}};
 }
 
-// Where it is much of E.
+// Line on reciprocity, if that is much of E.
 std::string Irreducible(const ScoreReport& score) {
   constexpr double kMuch = 0.1;
   const double share = IrreducibleShare(score);
@@ -114,7 +114,7 @@ std::string StretchLine(const ModelSpec& spec) {
          DescribeStretches(spec) + "\n";
 }
 
-// What was chosen, and what it was chosen from.
+// Lines on the chosen nodes and the other candidates.
 std::string Describe(const NodeChoice& choice) {
   const NodeCandidate& chosen = choice.tried[choice.chosen];
   std::string text = "nodes        chosen by error on held-out directions: " + chosen.name +
@@ -134,7 +134,7 @@ std::string Describe(const FitReport::Prior& prior) {
          "; E is of the measured directions alone, but where it says otherwise\n";
 }
 
-// What was chosen, and what it was chosen from.
+// Lines on the chosen form and the other candidates.
 std::string Describe(const FitReport::Finished& finished) {
   std::string text;
   if (finished.held_out > 0) {

@@ -16,7 +16,7 @@
 namespace trilobe {
 namespace {
 
-// Where --model=auto would have chosen among forms.
+// Whether --model=auto would have chosen among forms.
 bool MayChooseForm(const FitReport& report) {
   const bool of_table = report.appearance && !report.appearance->at_nodes;
   const bool named_start = std::ranges::find(InitialModels(), report.fit.init,
@@ -56,7 +56,7 @@ std::string FormText(const FitReport& report) {
 
 double RelativeTo(double black, double E) { return black > 0 ? E / black : 0; }
 
-// What followed the solver: by how much each step moved E.
+// Text on the steps after the solver, and by how much each moved E.
 std::string FinishedText(const FitReport& report) {
   std::string text;
   for (const FinishingStep& step : report.finished.steps) {

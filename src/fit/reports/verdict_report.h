@@ -23,7 +23,7 @@ struct ReportedVerdict {
   std::vector<Advice> advice;
 };
 
-// What a verdict on a model with `parameters` rests on; 0 if it was not fitted to these samples.
+// Evidence for a verdict on a model with `parameters`; 0 if it was not fitted to these samples.
 Basis BasisOf(const BrdfSamples& samples, int parameters);
 
 // Judges the sphere, or else the samples; one of the two must be given.
@@ -37,7 +37,7 @@ std::string Describe(const ReportedVerdict& reported);
 // Fraction of E due to differences between exchanged directions in the data, 0 to 1.
 double IrreducibleShare(const ScoreReport& score);
 
-// "5.6 %" and what it is the mean of.
+// Text such as "5.6 %", with what it is the mean of.
 std::string RelativeErrorText(double mean_relative_error);
 
 // "verdict" in report.json and of `score --json` (docs/file-formats.md).

@@ -18,7 +18,7 @@
 namespace trilobe {
 namespace {
 
-// What distinguishes two cached results: one line each.
+// Properties that distinguish two cached results: one line each.
 class Key {
  public:
   explicit Key(const std::string& kind) { Add("result", kind); }

@@ -15,7 +15,7 @@
 namespace trilobe {
 namespace {
 
-// How far away in phi_d bins still tell of a pair of directions.
+// Distance in phi_d up to which bins still tell of a pair of directions.
 constexpr double kPhiReachDegrees = 10;
 
 std::string Text(const MerlGrid& grid) {
@@ -30,7 +30,7 @@ struct Selection {
   std::vector<double> reads = {};
 };
 
-// Those that are read at all.
+// Selects the samples that are read at all.
 Selection ThoseRead(const std::vector<double>& reads) {
   Selection selection;
   for (size_t j = 0; j < reads.size(); ++j) {

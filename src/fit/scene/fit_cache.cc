@@ -52,7 +52,7 @@ void FitCache::Keep(std::string_view key, std::string_view content) const {
 }
 
 std::string DefaultCacheFolder() {
-  // As the XDG Base Directory Specification has it, a relative path is no path.
+  // The XDG Base Directory Specification has relative paths ignored.
   const char* const xdg = std::getenv("XDG_CACHE_HOME");
   if (xdg != nullptr && xdg[0] == '/') return std::string(xdg) + "/trilobe";
   const char* const home = std::getenv("HOME");

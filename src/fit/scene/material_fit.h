@@ -25,7 +25,7 @@ struct SceneFitSettings {
   std::string weighting;
   int lobes = 3;
   uint64_t seed = 1;  // of the start
-  // How measurements are read, but for what SceneMaterial::options says; num_threads is replaced.
+  // Options of reading measurements, but for SceneMaterial::options; num_threads is replaced.
   SourceOptions source;
   std::string program;  // "trilobe 0.1.0", for model files
   std::string build;    // build of the program; fits of another build are not reused
@@ -41,7 +41,7 @@ struct SceneFitSettings {
 struct SceneScore {
   double objective = 0;  // E
   double psnr_db = 0;
-  // By SceneJudge; given for a budget of appearance or a verdict.
+  // Values of SceneJudge, for a budget of appearance or a verdict.
   std::optional<double> mean_delta_e = std::nullopt, seen_psnr_db = std::nullopt;
 };
 

@@ -102,10 +102,10 @@ class Node {
     return value;
   }
 
-  // As it stands in the file.
+  // The number's text, as it stands in the file.
   std::string NumberText() const { return std::string(json_.number_text()); }
 
-  // One of these words.
+  // The string, which must be one of these words.
   std::string Word(const std::vector<std::string_view>& known) const {
     std::string word = String();
     if (std::ranges::find(known, word) != known.end()) return word;
@@ -255,7 +255,7 @@ void ReadOptions(const Node& node, std::map<std::string, std::string>* options) 
   }
 }
 
-// What a material may have of its own, and a scene for all materials that have not.
+// Reads members that a material may have of its own, and a scene for all materials without.
 void ReadLimits(const Node& node, const std::string& scene_file, SceneMaterial* material) {
   if (node.Has("directions")) material->directions = ReadDirections(node["directions"], scene_file);
   if (node.Has("channels")) {

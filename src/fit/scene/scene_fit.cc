@@ -28,8 +28,7 @@
 namespace trilobe {
 namespace {
 
-// With a budget of seconds: the share of it after which a fit stops. The rest is for leaving out
-// what is free.
+// Share of a budget of seconds after which a fit stops. The rest is for leaving out what is free.
 constexpr double kFitShare = 0.8;
 
 // Lobes where a budget asks for less error than that of the full fit.
@@ -78,12 +77,12 @@ SceneScore ScoreOn(const Objective& objective, const FactorModel& model) {
   return {report.objective, report.psnr_db};
 }
 
-// Of a measurement, or the text of a model.
+// A file, or the text of a built-in model.
 Source SourceOf(const std::string& name) {
   return IsMaterial(name) ? Source(name, std::string(MaterialText(name))) : Source(name);
 }
 
-// One material, of which nothing is read more than once, or without need.
+// Fits one material, of which nothing is read more than once, or without need.
 class MaterialFitter {
  public:
   MaterialFitter(const SceneMaterial& material, const SceneFitSettings& settings, int num_threads)
@@ -167,7 +166,7 @@ class MaterialFitter {
     return ForSamples(std::move(weighting), all, num_threads_);
   }
 
-  // As `trilobe fit` has them but for what the scene says.
+  // Options of `trilobe fit`, but for what the scene says.
   FitOptions Options() const {
     FitOptions options;
     options.form.lobes = settings_.lobes;
@@ -230,8 +229,7 @@ class MaterialFitter {
     return fit.file.layout ? fit.file.layout->num_parameters(spec) : spec.num_parameters();
   }
 
-  // Where a picture judges, E says only where to look next: some of the samples are enough for
-  // that.
+  // If a picture judges, E says only where to look next: some of the samples are enough for that.
   static FitProblem Guide(const FitProblem& problem, const FullFit& fit) {
     if (problem.with_prior || problem.data.spec().anisotropic()) return problem;
     return {.data = ThinnedObjective(problem.data, StoredParameters(fit), kFewSamples)};

@@ -19,7 +19,7 @@ namespace {
 
 double ErrorByPsnr(double psnr_db) { return std::pow(10, -psnr_db / 20); }
 
-// What the scene sees of a measurement.
+// The part of a measurement that the scene sees.
 Measurement LimitToScene(const SceneMaterial& material, Measurement measured) {
   if (material.reductions.samples) {
     // Bins reach beyond the bound of ranges, where the model has entries without data.
@@ -121,7 +121,7 @@ bool SceneJudge::SphereShowsSomething() const {
   return std::ranges::any_of(std::array{0.0, 0.1}, [this](double diffuse) {
     FactorModel model(ModelSpec::SharedFactors(0));
     std::ranges::fill(model.d(), diffuse);
-    // What some of the pixels show, all of them do.
+    // CompareQuickly reads some of the pixels: what these show, all of them do.
     return CompareQuickly(model).mean_delta_e > 0 || Compare(model).mean_delta_e > 0;
   });
 }

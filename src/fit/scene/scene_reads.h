@@ -45,12 +45,12 @@ class SceneReads {
   void AddRead(const std::vector<Share>& shares, double weight);
 
   void FindNeighbours(const BrdfSamples& all);
-  // What was measured at used_, by a model that has `fitted` there.
+  // Measured values at used_: those of a model, `fitted`, times measured over fitted sums around.
   std::vector<Rgb> MeasuredLike(const std::vector<Rgb>& fitted, const FactorModel& model,
                                 int num_threads) const;
 
   BrdfSamples used_, around_;
-  // In around_, of all of used_ in turn; and where those of each end.
+  // Numbers in around_, for each of used_ in turn; and their ends.
   std::vector<int> neighbours_;
   std::vector<int64_t> neighbours_end_;
   std::vector<Cosines> cosines_;  // of used_

@@ -51,8 +51,8 @@ std::optional<LobeMatch> Match(const StudyRun* reference, const StudyRun& run) {
   return MatchLobes(reference->file, run.file);
 }
 
-// What an excess is relative to: the lowest E, or where this is next to nothing, as of data without
-// noise, the smallest part of the E at the start that rounding leaves.
+// Unit of an excess: the lowest E or, if that is next to nothing, as for data without noise, the
+// smallest part of the E at the start that rounding leaves.
 double Unit(const std::vector<const StudyRun*>& runs, double lowest) {
   constexpr double kRounding = 1e-12;
   double initial = 0;

@@ -49,8 +49,8 @@ struct StudyRun {
   // Set by CompareRuns: the lowest E of the problem's runs, and what an excess over it is relative
   // to.
   double lowest = 0, unit = 1;
-  // With the lobes of the problem's lowest run and of the method's own, unless these cannot be
-  // compared, are none, or are this run's.
+  // Match with the lobes of the problem's lowest run and of the method's own, unless these cannot
+  // be compared, are none, or are this run's.
   std::optional<LobeMatch> lobes = {}, own_lobes = {};
 
   bool failed() const { return !error.empty(); }
@@ -59,7 +59,7 @@ struct StudyRun {
   double excess() const { return ExcessOf(objective()); }
   int iterations() const;
   bool reached_limit() const;  // of iterations or time: E might fall further
-  // How alike its lobes are to those of the problem's lowest run.
+  // Agreement of its lobes with those of the problem's lowest run.
   std::optional<double> agreement() const;
   // Seconds until E has at most this excess; infinite if it never has.
   double SecondsTo(double most_excess) const;
@@ -145,7 +145,8 @@ std::vector<std::string> MethodsOf(std::span<const StudyRun> runs);
 // "stopped by --max_seconds", "converged"; of a StopReasonName.
 std::string EndingWords(const std::string& reason);
 
-// "10 of 10 stopped by --max_iterations", "3 of 5 converged, 2 of 5 stopped by --max_seconds".
+// Text such as "10 of 10 stopped by --max_iterations", or "3 of 5 converged, 2 of 5 stopped by
+// --max_seconds".
 std::string EndingsText(const MethodSummary& of);
 
 // Says in sentences what the runs show: who found the lowest E, how often, how soon; who was

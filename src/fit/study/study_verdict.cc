@@ -30,8 +30,8 @@ std::string Of(const Share& share) {
 
 std::string PercentText(double share) { return Text(100 * share, 3) + " %"; }
 
-// What is said of each method, in their order; nothing of more than a sentence can hold, which the
-// table tells.
+// Words on each method, in their order; nothing for more methods than a sentence can hold, which
+// the table tells.
 template <typename Words>
 std::string EachMethod(const std::vector<MethodSummary>& methods, const Words& words) {
   constexpr size_t kMost = 5;
@@ -47,7 +47,7 @@ bool IsLimit(const std::string& reason) {
   return StudyRun{.problem = "", .method = "", .folder = "", .stop_reason = reason}.reached_limit();
 }
 
-// "10 of 10 stopped by --max_iterations" of the endings that count.
+// Text on the endings that count, such as "10 of 10 stopped by --max_iterations".
 template <typename Counts>
 std::string EndingsOf(const MethodSummary& of, const Counts& counts) {
   std::string text;
@@ -125,7 +125,8 @@ std::string LimitSentence(const std::vector<MethodSummary>& methods) {
          ".";
 }
 
-// "after 2.1 s" on one problem; of several the geometric mean, "after 4.4 s on 2 of 3 problems".
+// Text such as "after 2.1 s" for one problem; for several the geometric mean, "after 4.4 s on 2 of
+// 3 problems".
 std::string TimesText(const Times& times) {
   const std::string where = times.of == 1 || times.reached == times.of
                                 ? ""

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kStream = "#BEGIN_STREAM";
 
-// --- What the numbers of a sample are ------------------------------------------------------------
+// --- Inputs of a sample --------------------------------------------------------------------------
 
 // The first numbers of a sample: what they are called, whether they tell azimuths apart, and the
 // directions of the light (L) and of the view (V) that they stand for. Angles in radians.
@@ -121,7 +121,8 @@ void CheckAltaHeader(const TextLines& lines, const std::map<std::string, std::st
   }
 }
 
-// Up to the first sample, where `lines` is then, or to the line #BEGIN_STREAM of a binary file.
+// Reads up to the first sample, where `lines` is then, or to the line #BEGIN_STREAM of a binary
+// file.
 AltaHeader ReadAltaHeader(TextLines* lines) {
   AltaHeader header;
   std::map<std::string, std::string> seen;

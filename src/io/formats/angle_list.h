@@ -20,11 +20,11 @@ std::vector<double> ReadAngleList(const AngleList& list, std::string_view count,
 // The numbers of the line where `lines` is. Throws Error unless there are `count` of them.
 std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, const char* what);
 
-// How many entries there are without a last one that repeats the first a whole turn later.
+// Number of entries without a last one that repeats the first a whole turn later.
 size_t Distinct(const std::vector<double>& degrees);
 
-// Where x stands among ascending nodes: `t` of the way from `lower` to the next; at an end beyond
-// it, and at a single node.
+// Position of x among ascending nodes: `t` of the way from `lower` to the next; at the end beyond
+// an end, and at the node if there is only one.
 struct BetweenNodes {
   size_t lower = 0;
   double t = 0;

@@ -10,7 +10,7 @@
 namespace trilobe {
 namespace {
 
-// What the values of a line are, and where.
+// Meaning and position of the values of a line.
 struct Columns {
   std::vector<std::string> names;
   AngleColumns angles;

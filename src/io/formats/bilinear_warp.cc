@@ -11,8 +11,8 @@ namespace {
 
 double Lerp(double t, double a, double b) { return (1 - t) * a + t * b; }
 
-// Where `value` lies in running integrals at the nodes 0 .. count-1: the last interval that begins
-// at or below it.
+// Interval of `value` in running integrals at the nodes 0 .. count-1: the last that begins at or
+// below it.
 template <typename Integral>
 int FindInterval(int count, double value, const Integral& integral) {
   int begin = 0, end = count - 1;

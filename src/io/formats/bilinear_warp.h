@@ -44,7 +44,7 @@ struct BilinearStack {
   int slices() const { return static_cast<int>(values.size()) / (rows * columns); }
   // The value of one slice at a point.
   double At(int slice, const SquarePoint& point) const;
-  // Of each `all` slices one after another these alone, in this order.
+  // The slices `of_each` of every `all` successive ones, in this order.
   BilinearStack Chosen(int all, const std::vector<size_t>& of_each) const;
 };
 

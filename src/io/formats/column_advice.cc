@@ -158,7 +158,7 @@ std::string AdviceOnBands(const std::vector<TableColumn>& columns) {
          ColumnsFlag(columns, first - columns.begin(), "645nm");
 }
 
-// What values are by their names, if that is no BRDF in 1/sr.
+// Advice if the names of columns say that values are not a BRDF in 1/sr, else "".
 std::string AdviceOnScale(const std::vector<TableColumn>& columns) {
   for (size_t k = 0; k < columns.size(); ++k) {
     const TableColumn& column = columns[k];
@@ -214,7 +214,7 @@ std::string AdviceOnCoordinates(const std::vector<TableColumn>& columns) {
     if (column.role != ColumnRole::kOther) continue;
     const std::string key = KeyOf(column);
     for (const Coordinate& coordinate : kCoordinates) {
-      // Before "beta": what is between bars is a distance.
+      // Checked before "beta": the distance between bars, |beta - beta0|.
       const bool is_distance = key.find("betabeta") != std::string::npos || key.starts_with("bb0");
       const bool fits = coordinate.begin == "bb0"
                             ? is_distance

@@ -8,9 +8,8 @@
 
 namespace trilobe {
 
-// What to type, or to do, about a table that lacks columns of values, or of theta_i unless that is
-// given, where another column may hold what these follow from. "": nothing is missing, or nothing
-// is known of its columns.
+// Advice on a table that lacks columns of values, or of theta_i unless that is given, if these may
+// follow from another column. "": nothing is missing, or nothing is known of its columns.
 std::string AdviceOn(const std::vector<TableColumn>& columns, bool theta_i_is_given);
 
 // "--columns=theta_i,-,theta_o,f": the columns by their usual names, this one as f.

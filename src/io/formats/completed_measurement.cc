@@ -37,7 +37,7 @@ Rgb Times(const Rgb& ratio, const Rgb& model, double e) {
   return value;
 }
 
-// Of the measured values.
+// The offset e [1/sr]: 1 % of the mean of the measured values.
 double OffsetOf(const std::vector<CompletedMeasurement::Place>& places) {
   double sum = 0;
   for (const CompletedMeasurement::Place& place : places) sum += Mean(place.measured);

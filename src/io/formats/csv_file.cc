@@ -19,7 +19,7 @@
 namespace trilobe {
 namespace {
 
-// With phi_i = 0 and phi_o from 0 to 360 degrees.
+// Spherical angles with phi_i = 0 and phi_o from 0 to 360 degrees.
 SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
   SphericalAngles at = ToSphericalAngles(ToDirections(angles));
   at.phi_o -= at.phi_i;

@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-// Distributed by their cosines.
+// Draws pairs of directions, each distributed by its cosine.
 std::vector<CompletedMeasurement::Place> DrawPlaces(const PairBrdf& brdf, double max_theta) {
   constexpr int kPairs = 20000;
   std::vector<CompletedMeasurement::Place> places;

@@ -12,15 +12,15 @@
 
 namespace trilobe {
 
-// A BRDF that files for other programs hold, and the places where these are held against it.
+// A BRDF for files of other programs, and the places at which these are compared with it.
 struct ExportedBrdf {
   PairBrdf value;
   bool anisotropic = false;
   std::vector<CompletedMeasurement::Place> places;
 };
 
-// That of a model, of which no reference is kept; its places are no farther than max_theta [rad]
-// from the normal. Throws Error for parameters that CheckParameters refuses.
+// The BRDF of a model, of which no reference is kept; its places are no farther than max_theta
+// [rad] from the normal. Throws Error for parameters that CheckParameters refuses.
 ExportedBrdf ExportedModel(const FactorModel& model, double max_theta);
 
 // Relative errors of rho cos theta_o of a file, over the places: their median, and their 99 %

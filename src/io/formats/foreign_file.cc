@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// What a file is looked at for a word that tells what it is.
+// Number of leading bytes that are searched for a word of a known kind of file.
 constexpr size_t kLookedAt = 1 << 16;
 
 constexpr std::string_view kPickle = "a pickle of Python",

@@ -6,9 +6,9 @@
 
 namespace trilobe {
 
-// What a file is that people have in the place of a measurement and no reader takes, and what to
-// do: "a workbook; save it as CSV, ...". By its bytes, and where these may be several things by the
-// ending of its name. "" for others.
+// Name of a kind of file that no reader takes, though people have it in the place of a measurement,
+// with advice: "a workbook; save it as CSV, ...". Known by its bytes and, if these fit several
+// kinds, by the ending of its name. "" for others.
 std::string ForeignFile(std::string_view bytes, const std::string& name);
 
 }  // namespace trilobe

@@ -19,14 +19,14 @@ namespace {
 
 // Azimuths of patches of the full basis begin and end at multiples of a turn over so many.
 constexpr int kSectors = 480;
-// How many directions of light a patch has, and how many half vectors each of these.
+// Numbers of directions of light per patch, and of half vectors per direction.
 constexpr int kThetas = 4, kGrazingThetas = 10, kPhis = 4, kRays = 48, kNodes = 96;
 
 const KlemsBasis& Full() { return KlemsBases()[0]; }
 
 double SquaredSine(double degrees) { return std::pow(std::sin(DegreesToRadians(degrees)), 2); }
 
-// Of a patch.
+// Projected solid angle of a patch.
 double ProjectedSolidAngle(const KlemsRing& ring) {
   return kPi * (SquaredSine(ring.end) - SquaredSine(ring.begin)) / ring.patches;
 }
@@ -39,7 +39,7 @@ size_t RingOf(double theta) {
   return ring - rings.begin();
 }
 
-// The light that goes into a part of the hemisphere, over that which comes.
+// Light that goes into a part of the hemisphere, over the incident light.
 struct Part {
   Rgb light{};       // integral of f cos theta_o d omega_o
   double angle = 0;  // integral of cos theta_o d omega_o, by the same rule
@@ -138,7 +138,7 @@ class LightRule {
   Parts& parts_;
 };
 
-// Of light that comes evenly, by projected solid angle, from opposite a patch.
+// Reflected light for incidence that is even, by projected solid angle, from opposite a patch.
 Parts LightOf(const PairBrdf& brdf, const KlemsRing& ring, double phi, uint64_t seed) {
   Parts parts(Full().rings.size() * kSectors);
   const double from = SquaredSine(ring.begin), to = SquaredSine(ring.end);
@@ -186,7 +186,7 @@ std::vector<Rgb> KlemsMeans(const ExportedBrdf& brdf, int num_threads) {
   }
   const size_t size = columns.size();
   std::vector<Rgb> means(size * size);
-  // Those of an isotropic BRDF are those of the first of a ring, turned.
+  // Columns of an isotropic BRDF are those of the first patch of a ring, turned.
   ParallelFor(static_cast<int>(size), num_threads, [&](int first) {
     const auto& [ring, patch] = columns[first];
     if (!brdf.anisotropic && patch > 0) return;
@@ -237,7 +237,7 @@ void AppendBasis(Xml* parent) {
   }
 }
 
-// `channel` of `means`.
+// Appends the matrix of `channel` of `means`.
 void AppendMatrix(const std::vector<Rgb>& means, int channel, const char* side, Xml* parent) {
   const size_t size = PatchesOf(Full()).size();
   std::string numbers = "\n";

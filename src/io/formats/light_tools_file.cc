@@ -23,7 +23,7 @@ struct LightToolsHeader {
   bool tristimulus = false;
 };
 
-// What the lines before the values of a block say.
+// Header and values of a block.
 struct LightToolsBlock {
   double incidence = 0, plane = 0;  // [degrees]
   bool is_front = true, is_reflection = true;
@@ -37,7 +37,7 @@ struct LightToolsBlock {
              " can be read");
 }
 
-// Up to the line DataBegin.
+// Reads up to the line DataBegin.
 LightToolsHeader ReadLightToolsHeader(TextLines* lines) {
   LightToolsHeader header;
   while (lines->Next()) {

@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kFewestColumns = 2;
 constexpr int kMostLinesAbove = 200;
 
-// What rows and columns of a matrix are, as names of columns of a table.
+// Angles of the rows and columns of a matrix, as names of columns of a table.
 struct Axes {
   std::string row, column;
 };
@@ -92,7 +92,7 @@ class MatrixRows {
     columns_.clear();  // what follows is another matrix
   }
 
-  // Of a header all cells but the first are numbers, or hold some.
+  // In a header, all cells but the first are numbers, or hold some.
   bool IsHeader(const std::vector<std::string_view>& cells) {
     if (!columns_.empty() || cells.size() < kFewestColumns) return false;
     if (const std::optional<Axes> found = AxesIn(cells[0])) axes_ = found;

@@ -15,7 +15,7 @@ namespace trilobe {
 // ParseMerl can read the format on another grid.
 BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid = {});
 BrdfTable ReadMerl(const std::string& path);
-// `before_renaming`: as of WriteFile.
+// `before_renaming`: see WriteFile.
 void WriteMerl(
     const BrdfTable& table, const std::string& path,
     const BeforeRenaming& before_renaming = [](std::string_view) {});

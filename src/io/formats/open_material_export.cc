@@ -96,7 +96,7 @@ class OpenMaterialGrid {
     }
   }
 
-  // Linear in all three angles.
+  // Interpolates linearly in all three angles.
   Rgb Interpolated(const DirectionPair& pair) const {
     const SphericalAngles at = ToSphericalAngles(pair);
     const double azimuth = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi));

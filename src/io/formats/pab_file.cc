@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-// What the comments before a value say.
+// Header of a value: the comments before it.
 struct PabHeader {
   std::optional<double> theta, phi;  // of the incidence [degrees]
   bool is_known = false;             // whether there was a line `format`

@@ -44,7 +44,7 @@ class RadianceXml {
              .append(">, which a BSDF of Radiance or WINDOW needs; export it with its values"));
   }
 
-  // Without the white space around it.
+  // Text of a child without the white space around it.
   std::string_view Text(const pugi::xml_node& node, const char* name) const {
     return Trimmed(Child(node, name).child_value());
   }
@@ -69,7 +69,7 @@ class RadianceXml {
 
 // --- Klems bases ---------------------------------------------------------------------------------
 
-// One that a file defines.
+// Reads a basis that a file defines.
 KlemsBasis ReadBasis(const RadianceXml& xml, const pugi::xml_node& node) {
   constexpr int kMostPatches = 1 << 14;
   KlemsBasis basis = {.name = std::string(xml.Text(node, "AngleBasisName")), .rings = {}};
@@ -149,7 +149,7 @@ ReflectionBlocks FindReflection(const RadianceXml& xml, const pugi::xml_node& la
   xml.Fail(layer, "it has neither Reflection Front nor Reflection Back, only transmission");
 }
 
-// Those of the colour: X, Y, Z, or one for all channels; and what they are.
+// Blocks of the colour: X, Y, Z, or one for all channels; and their kind in words.
 struct ColorBlocks {
   std::vector<pugi::xml_node> blocks;
   std::string name;

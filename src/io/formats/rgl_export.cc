@@ -32,7 +32,8 @@ constexpr Size kIsotropic[] = {{8, 1, 32},  {16, 1, 32}, {16, 1, 64},
 constexpr Size kAnisotropic[] = {{8, 9, 32}, {8, 17, 32}, {12, 25, 32}, {12, 37, 48}};
 constexpr int kUsual = 4;  // so many first ones are of usual size
 
-// Of `spectra` [nm]. Between them renderers take them as linear, and beyond them as constant.
+// Wavelengths of `spectra` [nm]. Renderers interpolate linearly between them, and repeat the first
+// and the last beyond them.
 constexpr double kFirstWavelength = 400, kWavelengthStep = 20;
 constexpr int kWavelengths = 16;
 
@@ -108,8 +109,8 @@ class Tables {
     return ndf_.At(0, {u, turns - std::floor(turns)});
   }
 
-  // What is reflected by a half vector m, over the albedo, in the mean over directions wi that were
-  // measured, of whose wo the same is true: `value` is f cos theta_o, and `light` that by solid
+  // Reflected light of a half vector m over the albedo, for directions wi that were measured and
+  // whose wo were, too: `value` is the mean of f cos theta_o, and `light` the sum of that by solid
   // angle,
   //   d omega_o = 4 (wi . m) sin theta_m d theta_m d phi_m,  d theta_m in proportion to u du.
   struct Seen {
@@ -140,8 +141,9 @@ class Tables {
     return seen;
   }
 
-  // What is seen of half vectors, by which values change little over x; that is D, times what G and
-  // F let through of it. Where none is seen, as next to it.
+  // Sets ndf to the mean value of each half vector, by which values change little over x; that is
+  // D, times what G and F let through of it. Half vectors without a value take that of the one
+  // before.
   void MakeNdf() {
     const ModelSpec& spec = model_.spec();
     const int rows = spec.anisotropic() ? 2 * std::max(spec.d_axis.phi_nodes, 24) + 1 : 2;
@@ -229,7 +231,8 @@ class Tables {
           const Direction m = ToDirection({theta_m, phi_m});
           Direction wo = Reflected(wi, m);
           const bool above = wo[2] > 0 && Dot(wi, m) > 0;
-          // What is below the horizon is read by interpolation next to it; as at the horizon.
+          // Points below the horizon are read by interpolation next to it; they get values of the
+          // horizon.
           wo[2] = std::max(wo[2], least_cosine);
           const double length = std::sqrt(Dot(wo, wo));
           for (double& a : wo) a /= length;
@@ -254,7 +257,7 @@ class Tables {
         }
         const auto slice = std::span(values.luminance).last(static_cast<size_t>(n) * n);
         const float largest = *std::ranges::max_element(slice);
-        // Nothing that reflects is never drawn.
+        // Positive everywhere, so that all that reflects can be drawn.
         for (float& x : slice) x = largest > 0 ? std::max(x / largest, 1e-4F) : 1;
       }
     }
@@ -292,7 +295,7 @@ std::vector<float> SpectraOf(const std::vector<float>& rgb, const std::vector<do
   return spectra;
 }
 
-// What a file holds: RGB, spectra that are made of it, or spectra that there are.
+// Colours in a file: RGB, spectra made of RGB, or given spectra.
 struct FileColors {
   enum class Kind { kRgb, kMadeSpectra, kSpectra } kind = Kind::kRgb;
   std::vector<double> wavelengths = {};  // of kSpectra

@@ -31,7 +31,7 @@ struct RglExport {
   std::string bytes;
   int theta_i = 0, phi_i = 1, resolution = 0;  // nodes; rows and columns of values
   double median_error = 0, high_error = 0;     // relative; high_error is the 99 % quantile
-  // With `spectral`: relative colour error of the spectra before interpolation: its maximum, and
+  // Relative colour error of the spectra before interpolation, with `spectral`: its maximum, and
   // the fraction of colours with more than 0.001.
   double color_error = 0, colors_off = 0;
 };

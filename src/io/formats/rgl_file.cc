@@ -36,7 +36,7 @@ struct RglBrdf::Tables {
   RglMask mask;                     // [p t]: which nodes of rgb were measured
 };
 
-// Where a pair of directions is in the tables.
+// Position of a pair of directions in the tables.
 struct RglBrdf::Place {
   SliceBlend blend = {};  // over (phi_i, theta_i)
   SquarePoint x = {};
@@ -263,7 +263,7 @@ RglBrdf::Place RglBrdf::Locate(const DirectionPair& directions) const {
     }
   }
 
-  // Where the projected area vanishes no microfacet is seen: nothing is reflected.
+  // If the projected area vanishes, no microfacet is seen: nothing is reflected.
   const double divisor = 4 * tables_->sigma.At(0, u_i) * wo[2];
   if (!(divisor > 0)) return {};
   const SquarePoint x = tables_->vndf.Invert(blend, u_m);

@@ -39,12 +39,12 @@ class RglBrdf {
   // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
 
-  // Of a file of isotropic spectra: their wavelengths [nm], ascending, and the BRDF [1/sr] at
-  // these, as Evaluate. Both are empty for others.
+  // For a file of isotropic spectra: their wavelengths [nm], ascending, and the BRDF [1/sr] at
+  // these, like Evaluate. Both are empty for others.
   const std::vector<double>& wavelengths() const;
   std::vector<double> Spectrum(const DirectionPair& directions) const;
 
-  // How many wavelengths the file has, 0 of one of RGB, and what of them was read
+  // Number of wavelengths in the file, 0 for RGB, and a note on those that were read
   // (SpectrumBands::Note).
   int bands() const;
   const std::string& bands_note() const;

@@ -16,7 +16,7 @@ constexpr const char* kField = "valid";
 // They are float32, so 90 degrees need not be kPi / 2.
 constexpr double kHorizon = kPi / 2 - 1e-4;
 
-// What part of the first column must agree on what means measured.
+// Share of the first column that must agree on which bit means measured.
 constexpr double kNearlyAll = 0.9;
 
 // The bits of the field, the most significant of each byte first.

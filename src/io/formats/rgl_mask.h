@@ -9,7 +9,7 @@
 
 namespace trilobe {
 
-// Which nodes of an RGL file's field `rgb` the authors measured, and which they filled
+// Nodes of an RGL file's field `rgb` that the authors measured, and those that they filled
 // (docs/samples.md).
 class RglMask {
  public:

@@ -92,7 +92,7 @@ bool IsTable(std::string_view text) {
   });
 }
 
-// What to do with a file that may hold a measurement in a way that is not read.
+// Advice on a file that may hold a measurement in a way that is not read.
 std::string WhatIsMissing(Content::Kind kind, std::string_view bytes) {
   const std::string columns =
       std::string("; save its samples as CSV, with the header ") + kUsualColumns;
@@ -123,7 +123,7 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
     auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
       return (bytes.empty() || format.is_text == is_text) && format.ending == ending;
     });
-    // Of a text format that this cannot be: its reader says what is wrong.
+    // For binary content with the ending of a text format, the reader of that says what is wrong.
     if (found == formats.end() && !is_text) {
       found = std::ranges::find(formats, ending, &MeasurementFormat::ending);
     }
@@ -213,7 +213,7 @@ double ShownTilt(Measurement* measurement) {
 
 void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
-  // What undoes a corruption is the same, the other way round.
+  // Corrections are corruptions, too, the other way round.
   std::vector<Corruption> corruptions;
   const auto apply = [&](const char* name, double strength) {
     const CorruptionKind& kind = FindNamed("kind", name, CorruptionKinds());
@@ -363,7 +363,8 @@ Measurement Source::Read(const SourceOptions& options) const {
   CheckSourceOptions(options);
   Measurement measurement = synthetic() ? Synthesized(options) : Parsed(options);
   CorruptBy(options, &measurement);
-  // Of all that was measured: within a limit there may be no light to hold the shadow against.
+  // Judged by all that was measured: within a limit there may be no light to hold the shadow
+  // against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
   const MeasurementFormat* const format = synthetic() ? nullptr : RecogniseFormat(bytes_);
   DropBadReadings(options, format != nullptr && format->name == "rgl", &measurement);

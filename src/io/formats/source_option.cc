@@ -123,14 +123,14 @@ std::vector<SourceOption> MakeOptions() {
            .range = {"from 0 up to 1", [](double x) { return x >= 0 && x < 1; }},
            .changes_values = true}),
       Option<"corrupt", &Options::corrupt>(
-          {.help = "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., "
-                   "as noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds "
-                   "(docs/robustness.md)",
+          {.help =
+               "simulate errors of instruments, by --data_seed: KIND:STRENGTH,..., such as "
+               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)",
            .changes_values = true}),
       {.name = "tilt",
-       .help = "correct a measurement whose sample leant by so many degrees towards azimuth 0, "
-               "from which the light of a table comes, from -30 to 30; `trilobe info` tells; auto: "
-               "as the highlight of a table shows",
+       .help = "tilt of the measured sample to correct, in degrees towards azimuth 0, from which "
+               "the light of a table comes, from -30 to 30; `trilobe info` tells; auto: as the "
+               "highlight of a table shows",
        .default_value = "0",
        .changes_values = true,
        .set = SetTilt,
@@ -140,8 +140,8 @@ std::vector<SourceOption> MakeOptions() {
            }},
       {.name = "cosine",
        .help = "correct a measurement that has been multiplied by cos theta_i to this power, from "
-               "-2 to 2: 1 where it has a cosine too many, -1 where it has one too few; o:1 where "
-               "that is cos theta_o; `trilobe info` tells",
+               "-2 to 2: 1 for one cosine too many, -1 for one too few; o:1 for cos theta_o; "
+               "`trilobe info` tells",
        .default_value = "0",
        .changes_values = true,
        .set = SetCosine,
@@ -162,63 +162,60 @@ std::vector<SourceOption> MakeOptions() {
              return std::string(of.azimuth_from_mirror ? "from_mirror" : "from_light");
            }},
       {.name = "data_seed",
-       .help = "seed of what is done to the measurement: the noise of synth: sources, --missing "
-               "and --corrupt; with one of its own, --seed alone moves the start on the same data; "
-               "by default as --seed",
+       .help = "seed of random changes to the measurement: the noise of synth: sources, --missing "
+               "and --corrupt; if given, --seed varies the start alone, on the same data; by "
+               "default the value of --seed",
        .default_value = "",
        .changes_values = true,
        .set = SetDataSeed,
        .get = [](const Options& of) { return std::to_string(of.seed); }},
       Option<"max_angle", &Options::max_angle_deg>(
-          {.help = "leave out bins whose theta_i or theta_o is beyond this, in degrees",
+          {.help = "leave out bins whose theta_i or theta_o is beyond this",
            .range = {"in degrees above 0, up to 90", [](double x) { return x > 0 && x <= 90; }},
            .changes_values = true}),
       Option<"min_theta_d", &Options::min_theta_d_deg>(
           {.help = "leave out bins whose theta_d, half the angle between the two directions, is "
-                   "below this, in degrees, since a detector there stands in its own light; -1: as "
-                   "far as scattered samples show that it did",
+                   "below this, since a detector there blocks the light; -1: as far as scattered "
+                   "samples show that it did",
            .range = {"in degrees from 0 to below 90, or -1 to go by the data",
                      [](double x) { return x == -1 || (x >= 0 && x < 90); }},
            .changes_values = true}),
       Option<"extrapolated", &Options::extrapolated>(
-          {.help = "of an RGL file, also take what its authors did not measure but extrapolated, "
-                   "and what lies beyond its last theta_i; of scattered samples, what seems to be "
-                   "filled in",
+          {.help = "for an RGL file: also take values that its authors extrapolated instead of "
+                   "measuring, and those beyond its last theta_i; of scattered samples, what seems "
+                   "to be filled in",
            .of = "--extrapolated is of RGL files and of scattered samples",
            .applies =
                [](std::string_view reader, const Measurement& measured) {
                  return reader == "rgl" || !measured.table;
                }}),
-      Option<"outliers", &Options::outliers>(
-          {.help = "also take the bins of a table that are much darker or brighter than those "
-                   "around them"}),
+      Option<"outliers", &Options::outliers>({.help = "also take the bins of a table that are much "
+                                                      "darker or brighter than those around them"}),
       Option<"dark_noise", &Options::dark_noise>(
-          {.help = "take the readings of a table as they are, though dark noise is more than a "
-                   "tenth of their signal; else they become medians of what surrounds them"}),
+          {.help = "keep the readings of a table whose dark noise is more than a tenth of their "
+                   "signal; by default they become medians of the values around them"}),
       Option<"radiometry", &Options::radiometry>(
-          {.help = "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
+          {.help = "quantity that a UTIA file stores: brdf, cosine, srgb or dj_brdf "
                    "(docs/file-formats.md)",
            .of = "--radiometry is of UTIA files",
            .applies = [](std::string_view reader,
                          const Measurement&) { return reader == "utia"; }}),
       Option<"columns", &Options::columns>(
-          {.help = "of a text table, the names of its columns, in the place of a header: "
+          {.help = "names of the columns of a text table, in the place of a header: "
                    "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
                    "wavelength, and - for a column to leave out (docs/file-formats.md)",
            .of = "--columns is of text tables",
            .applies = IsText}),
       Option<"theta_i", &Options::theta_i_deg>(
-          {.help = "of a text table without a column theta_i, the angle of incidence of all its "
-                   "samples, in degrees",
+          {.help = "angle of incidence of all samples of a text table without a column theta_i",
            .range = {"in degrees from 0 to below 90, or -1 for none",
                      [](double x) { return x == -1 || (x >= 0 && x < 90); }},
            .of = "--theta_i is of text tables",
            .applies = IsText}),
       Option<"bands", &Options::bands>(
-          {.help = "of spectra, the wavelengths to read, in nm: one, as 550, for all channels; "
-                   "three, as 650,550,450, as r, g and b, the longest as r; or more, to make a "
-                   "colour of; without, all make a colour, and --spectral keeps each "
-                   "(docs/file-formats.md)",
+          {.help = "wavelengths of spectra to read, in nm: one, as 550, for all channels; three, "
+                   "as 650,550,450, as r, g and b, the longest as r; or more, to make a colour of; "
+                   "by default all make a colour, and --spectral keeps each (docs/file-formats.md)",
            .of = "--bands is of spectra",
            .applies = [](std::string_view, const Measurement& measured) {
              return measured.bands != 0;

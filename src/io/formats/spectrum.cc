@@ -173,7 +173,7 @@ std::span<const double> SmoothSpectra::operator()(const Rgb& rgb) {
       ColorOf(c);
     }
   }
-  // What is too saturated drives c far away, from where others would not find back.
+  // Colours that are too saturated drive c far away, from where others would not find back.
   if (distance <= kGood) last_ = c;
   error_ = distance / std::hypot(target[0], target[1], target[2]);
   for (double& value : spectrum_) value *= scale;

@@ -18,7 +18,7 @@ constexpr int kDigits = 6;
 
 std::string Nm(double wavelength) { return Text(wavelength, kDigits) + " nm"; }
 
-// "405, 532 and 650 nm"; of many, the two nearest to `at`.
+// Text such as "405, 532 and 650 nm"; of many wavelengths, the two nearest to `at`.
 std::string Known(std::span<const double> wavelengths, double at) {
   constexpr size_t kMost = 12;
   std::string text;
@@ -48,7 +48,7 @@ size_t Nearest(std::span<const double> wavelengths, double chosen, const std::st
   return nearest - wavelengths.begin();
 }
 
-// What to type where all wavelengths make no colour.
+// Advice on flags if all wavelengths make no colour.
 std::string Advice(std::span<const double> wavelengths) {
   std::vector<double> from_longest(wavelengths.begin(), wavelengths.end());
   std::ranges::sort(from_longest, std::greater<>());

@@ -18,7 +18,7 @@ namespace trilobe {
 // unless it is one, or three or more that differ.
 std::vector<double> ParseBands(std::string_view bands);
 
-// Which wavelengths of spectra are read, and the colour that they make: all; one alone, for all
+// The wavelengths of spectra that are read, and the colour that they make: all; one alone, for all
 // channels; three as r, g, b, the longest as r; or several, as if there were no others.
 class SpectrumBands {
  public:
@@ -28,7 +28,7 @@ class SpectrumBands {
                 const std::string& source);
 
   int all() const { return static_cast<int>(all_); }  // of the file
-  // Those that are read, indices of `wavelengths` [read].
+  // Indices of the wavelengths that are read. [read]
   const std::vector<size_t>& read() const { return read_; }
   // Three are r, g and b, and no spectrum is kept.
   bool are_channels() const { return !color_.has_value(); }
@@ -41,11 +41,11 @@ class SpectrumBands {
   void Add(const SphericalAngles& angles, std::span<const double> spectrum,
            SampleCollector* collector, bool nan_is_gap = false);
 
-  // "7 wavelengths to RGB by CIE 1931 (--bands picks some)", "532 nm".
+  // Text such as "7 wavelengths to RGB by CIE 1931 (--bands picks some)", or "532 nm".
   std::string Note() const;
 
  private:
-  // Those of `spectrum` that are read; valid until the next call.
+  // The part of `spectrum` that is read; valid until the next call.
   std::span<const double> Read(std::span<const double> spectrum);
 
   size_t all_;

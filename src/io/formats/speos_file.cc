@@ -30,12 +30,12 @@ class SpeosText {
  public:
   SpeosText(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
 
-  // At what was read last.
+  // Fails at the line of what was read last.
   [[noreturn]] void Fail(const std::string& problem) const {
     throw Error(source_ + ": line " + std::to_string(at_) + ": " + problem);
   }
 
-  // Up to the end of the line, where there is one.
+  // Reads up to the end of the line, or of the text.
   std::string_view RestOfLine(const char* what) {
     at_ = line_;
     if (rest_.empty()) Fail(std::string("the file ends before ") + what);
@@ -81,7 +81,7 @@ class SpeosText {
     return flag == 1;
   }
 
-  // Ascending.
+  // Reads ascending numbers.
   std::vector<double> Numbers(int count, const char* what, double least, double most) {
     std::vector<double> numbers;
     while (numbers.size() < static_cast<size_t>(count)) {
@@ -104,7 +104,7 @@ class SpeosText {
 
 // --- Tables --------------------------------------------------------------------------------------
 
-// By the angles of the outgoing direction. The mirror direction has phi = 0.
+// Values by the angles of the outgoing direction. The mirror direction has phi = 0.
 struct SpeosTable {
   std::vector<double> thetas, phis;  // [degrees]
   std::vector<double> values;        // [theta][phi]
@@ -177,7 +177,7 @@ double LightOf(const SpeosTable& table, bool is_bsdf, const SpeosText& text) {
   return 2 * kPi * light;
 }
 
-// What values are multiplied by, for `reflectance`; 0 of a black table.
+// Factor by which values are multiplied, for `reflectance`; 0 for a black table.
 double ScaleOf(const SpeosTable& table, double reflectance, bool is_bsdf, const SpeosText& text) {
   const double light = LightOf(table, is_bsdf, text);
   return light > 0 ? reflectance / light : 0;
@@ -301,8 +301,8 @@ SpeosSpectrum ReadSpeosSpectrum(SpeosText* text) {
   return spectrum;
 }
 
-// What values of all tables are multiplied by for a reflectance of 1: that of the rotation nearest
-// to the spectrum's phi, between the incidences about its theta.
+// Factor for the values of all tables, for a reflectance of 1: that of the rotation nearest to the
+// spectrum's phi, between the incidences about its theta.
 double ScaleAt(const SpeosSpectrum& spectrum, const std::vector<Rotation>& rotations,
                const std::vector<SpeosTable>& tables, bool is_bsdf, const SpeosText& text) {
   size_t first = 0, at = 0, nearest = 0;  // tables

@@ -31,7 +31,7 @@ constexpr std::string_view kOtherUnits[] = {
     "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
 constexpr std::string_view kNoBrdf[] = {"%", "percent"};
 
-// For a note, in UTF-8.
+// A name in quotes for a note, in UTF-8.
 std::string Quoted(std::string_view name) {
   constexpr size_t kLongest = 40;
   return std::string("'").append(Printable(name.substr(0, kLongest))).append("'");
@@ -51,7 +51,7 @@ constexpr std::string_view kOutgoing[] = {
     "scattering", "v",        "view",     "viewing",  "viewer",   "e",
     "exit",       "emission", "emergent", "obs",      "observer", "observation",
     "sensor",     "camera",   "det",      "detector", "receiver"};
-// With which no word for an angle need stand.
+// Words that need no word for an angle beside them.
 constexpr std::string_view kIncidentAlone[] = {
     "inc",          "incident",   "incidence", "incoming",       "aoi",           "ti",
     "thi",          "sza",        "einfall",   "einfallswinkel", "einfallwinkel", "dincidence",
@@ -85,7 +85,7 @@ constexpr std::string_view kFromMirror[] = {"fromspec",   "tospec",    "offspec"
                                             "deltaspec",  "minusspec", "aspecular",
                                             "frommirror", "tomirror",  "sthetaspec"};
 
-// Of theta or phi of what the rest of the name says.
+// Role of a theta or phi by the rest of its name.
 std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
   if (side.empty()) return unsaid;
   if (IsOneOf(side, kIncident)) return incident;

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// What a column of a text table holds. The angles come first, as in ColumnLayout::angles.
+// Meaning of a column of a text table. The angles come first, as in ColumnLayout::angles.
 enum class ColumnRole {
   kThetaI,
   kPhiI,
@@ -30,7 +30,7 @@ enum class ColumnRole {
   kOther
 };
 
-// What a number of a column of values means: f itself, 10 lg f, lg f or ln f.
+// Scale of the numbers in a column of values: f itself, 10 lg f, lg f or ln f.
 enum class ValueScale { kLinear, kDecibels, kLog10, kLn };
 
 // A column by its name: "theta_i", "Theta_i [deg]", "incidence angle (rad)", "red", "550nm".
@@ -44,7 +44,7 @@ struct TableColumn {
 };
 TableColumn ColumnNamed(std::string_view name);
 
-// What an angle's unit is in radians; degrees if it has none, nothing for other units.
+// Unit of an angle [rad]; degrees if it has none, nothing for other units.
 std::optional<double> RadiansIn(std::string_view unit);
 
 // "deg", "(rad)", "1/sr": a unit, without its brackets; none for other text.
@@ -53,7 +53,7 @@ std::optional<std::string> UnitIn(std::string_view cell);
 inline constexpr const char* kUsualColumns = "theta_i,phi_i,theta_o,phi_o,r,g,b";
 inline constexpr int kAngles = 4;
 
-// Where the angles and values of a row are.
+// Positions of the angles and values in a row.
 struct ColumnLayout {
   std::vector<TableColumn> columns;
   std::array<std::optional<size_t>, kAngles> angles = {};  // theta_i, phi_i, theta_o, phi_o

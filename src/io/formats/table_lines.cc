@@ -11,7 +11,7 @@
 namespace trilobe {
 namespace {
 
-// Of spreadsheets, in English and German.
+// Error values of spreadsheets, in English and German.
 constexpr std::string_view kCellErrors[] = {"#N/A",   "#NV",    "#DIV/0!", "#VALUE!",
                                             "#WERT!", "#REF!",  "#BEZUG!", "#NUM!",
                                             "#ZAHL!", "#NAME?", "#NULL!"};

@@ -18,7 +18,7 @@ std::optional<GivenAngle> GivenAngleIn(std::string_view line);
 // The line without a comment (from # on); "#N/A" and the like of spreadsheets begin none.
 std::string_view WithoutComment(std::string_view line);
 
-// What a cell has where nothing was measured: "", "NA", "#N/A".
+// Whether a cell stands for a missing measurement: "", "NA", "#N/A".
 bool IsGap(std::string_view cell);
 
 // A number with a decimal comma; none for others.
@@ -28,7 +28,7 @@ std::optional<double> DecimalCommaNumber(std::string_view cell);
 // exponent. None for what is no number.
 std::optional<double> OddNumber(std::string_view cell);
 
-// What is wrong with a cell that holds no number, and what to do.
+// Reason why a cell holds no number, and advice.
 std::string WhyNoNumber(std::string_view cell);
 
 // Whether a line is but a rule of a table of characters: "|---|:--:|", "+----+----+".

@@ -333,7 +333,7 @@ class TableReader {
     }
   }
 
-  // Of a row with several values.
+  // Rows with several values must all have the same wavelength.
   void CheckWavelength(const TextLines& lines) {
     if (!layout_.wavelength) return;
     const double wavelength = WavelengthOf(lines);
@@ -344,7 +344,7 @@ class TableReader {
                      "; make a column of each wavelength, as 550nm, or a file of each");
   }
 
-  // As this library writes it, and as it was the only way once.
+  // Whether the table has the layout that this library writes, once the only one that it read.
   bool IsUsual() const {
     return head_.separator == ',' && !head_.in_comment && head_.lines_before == 0 &&
            lines_after_ == 0 && options_.columns.empty() && !signed_ && !decimal_commas_ &&

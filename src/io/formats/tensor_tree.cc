@@ -14,7 +14,7 @@ namespace {
 constexpr int kMaxRank = 4;
 constexpr std::string_view kBetween = " \t\r\n,";
 
-// Of the unit cube.
+// A cell of the unit cube.
 struct Cell {
   std::array<double, kMaxRank> begin{};
   double size = 1;
@@ -44,7 +44,7 @@ class TreeReader {
   }
 
  private:
-  // Beyond white space and commas.
+  // Skips white space and commas.
   void Skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kBetween), rest_.size())); }
 
   bool Take(char c) {

@@ -59,12 +59,12 @@ std::vector<std::string> SplitNames(std::string_view line, char separator) {
   return names;
 }
 
-// Where names stand.
+// Context in which names stand.
 struct Place {
   bool in_comment, theta_i_is_given;
 };
 
-// How many of the names are known; 0 if they are not those of a table. Of prose, too, some are.
+// Number of names that are known; 0 if they are not those of a table. Prose contains some, too.
 int NamesKnown(const std::vector<std::string>& names, char separator, const Place& place) {
   int known = 0;
   bool has_angle = false, has_value = false;
@@ -104,7 +104,7 @@ std::optional<Names> NamesIn(std::string_view line, const Place& place) {
   return best;
 }
 
-// What stands behind the mark of a comment; none if it is none.
+// Text behind the mark of a comment; none if the line is no comment.
 std::optional<std::string_view> CommentOf(std::string_view line) {
   const size_t first = line.find_first_not_of("#%");
   if (first == 0) return std::nullopt;
@@ -237,7 +237,7 @@ void GoToRows(TableHead* head) {
     if (cells.size() == names.size() + 1 && cells.back().empty()) cells.pop_back();
     return cells.size();
   };
-  // Of a table of R the rows have names, which have none.
+  // In a table of R the rows have names, whose column has none.
   const auto has_row_names = [&] {
     return head->separator != ',' && count(head->separator) == names.size() + 1 &&
            (next.line().starts_with('"') || cells[0] == "1" || cells[0] == "0");

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// How a text table is written: what stands between its cells, and where its header is.
+// Layout of a text table: the separator of its cells, and the place of its header.
 struct TableHead {
   TextLines lines;  // at the header or, without one, before the first row
   std::vector<std::string> names = {};
@@ -34,7 +34,7 @@ TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view te
 // beyond a line of units and adds these to the names.
 void GoToRows(TableHead* head);
 
-// What would be the names of columns in a line that names none of a table.
+// Cells of a line as names of columns, for a table without known names.
 std::vector<std::string> NamesOfFirstLine(std::string_view line);
 
 // Whether lines of two numbers or more follow one another: a table, if not one of samples.

@@ -34,7 +34,7 @@ double AsDupuy(double stored, double /*cos_theta_i*/) {
 
 // --- The order of the numbers -------------------------------------------------------------------
 
-// Where a file might have the value of a pair of directions.
+// An order in which a file might store the values of pairs of directions.
 struct Order {
   const HemisphereGrid& grid;
   bool rows_by_phi = false, columns_by_phi = false;  // index 6 b + a in the place of 48 a + b
@@ -65,7 +65,7 @@ class MeanDifference {
   int count_ = 0;
 };
 
-// How far apart values are that should be near, in one reading of the file: those of swapped
+// Mean difference of values that should be near, in one reading of the file: those of swapped
 // directions, and of directions with neighbouring azimuths of incidence or of reflection. Each
 // alone is blind to some order: swapping all azimuths with all elevations keeps reciprocity.
 double Roughness(const std::vector<double>& stored, const Order& order) {
@@ -184,7 +184,7 @@ void WriteUtia(const Measurement& scattered, const std::string& path,
 
 namespace {
 
-// By the size alone; a text of that size is none.
+// Recognised by the size alone; a text of that size is none.
 bool LooksLikeUtia(std::string_view bytes) {
   return bytes.size() == Bytes(kUtiaGrid) &&
          RecogniseContent(bytes).kind == Content::Kind::kUnknown;

@@ -68,7 +68,7 @@ class ZemaxTable {
 
   bool IsGrey() const { return AreGrey(values_); }
 
-  // Of a rotation and an incidence, those of an azimuth.
+  // Values at all radials, for a rotation, an incidence and an azimuth.
   std::span<const Rgb> Row(size_t rotation, size_t incidence, size_t azimuth) const {
     return {&values_[IndexOf(rotation, incidence, azimuth, 0)], radials.size()};
   }
@@ -82,7 +82,7 @@ class ZemaxTable {
            radial;
   }
 
-  // Linear in all four angles.
+  // Interpolates linearly in all four angles.
   Rgb Interpolated(const DirectionPair& pair) const {
     const ZemaxAngles at = ToZemaxAngles(pair);
     const double azimuth = RadiansToDegrees(at.azimuth);

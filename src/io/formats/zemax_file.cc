@@ -31,7 +31,7 @@ const std::map<std::string_view, std::vector<std::string_view>>& Words() {
   return words;
 }
 
-// How the lines are called that each block of data begins with.
+// Names of the lines with which the blocks of data begin.
 std::vector<std::string_view> BlocksOf(std::string_view content) {
   if (content == "XYZ") return {"TristimulusX", "TristimulusY", "TristimulusZ"};
   if (content == "RGB") return {"TristimulusR", "TristimulusG", "TristimulusB"};
@@ -73,7 +73,7 @@ void CheckIsWhole(const std::map<std::string_view, bool>& seen, const TextLines&
   }
 }
 
-// Up to the line DataBegin.
+// Reads up to the line DataBegin.
 ZemaxHeader ReadZemaxHeader(TextLines* lines) {
   ZemaxHeader header;
   std::map<std::string_view, bool> seen;

@@ -9,7 +9,7 @@
 
 namespace trilobe {
 
-// What files of models of all kinds share.
+// Functions shared by files of models of all kinds.
 
 using OrderedJson = nlohmann::ordered_json;
 

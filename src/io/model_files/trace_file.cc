@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view kHeader =
     "iteration,seconds,objective,filtered,accepted,step,optimality";
-// After these: what older programs did not write; and of a fit with a prior, with its former name.
+// Columns after these, which older programs did not write; and, for a fit with a prior, the former
+// name.
 constexpr std::string_view kProcessor = ",processor_seconds";
 constexpr std::string_view kWithPrior = ",objective_with_prior";
 constexpr std::string_view kGuided = ",guided_objective";

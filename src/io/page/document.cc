@@ -21,7 +21,7 @@ std::string_view WebText(std::string_view name) {
 
 namespace {
 
-// So that no text ends the element that it stands in: "<" occurs in JSON within strings alone.
+// Keeps texts from ending the element that they stand in: "<" occurs in JSON within strings alone.
 std::string EscapeForScript(std::string_view json) {
   std::string text;
   text.reserve(json.size());
@@ -80,8 +80,8 @@ std::string ModuleText(std::string_view name) {
   return script;
 }
 
-// What a page may load and run: nothing of a network, its own scripts and styles by their SHA-256,
-// and these images.
+// Content security policy of a page: it may load nothing from a network, and run its own scripts
+// and styles by their SHA-256, and show these images.
 class Policy {
  public:
   // An element whose text this page may run, or be styled by.

@@ -35,7 +35,7 @@ class Bits {
   void Add(uint32_t number, int count) {
     for (int k = 0; k < count; ++k) AddBit(number >> k & 1);
   }
-  // As many ones as the number is above its low bits, a zero, and these.
+  // Rice code: number >> low ones, a zero, and the low bits.
   void AddRice(uint32_t number, int low) {
     for (uint32_t k = number >> low; k > 0; --k) AddBit(1);
     AddBit(0);
@@ -234,7 +234,7 @@ std::array<char, 4> ToRgbe(const Rgb& color) {
   return bytes;
 }
 
-// In at most 512 columns: means of pixels.
+// The environment, halved to at most 512 columns as far as both sizes are even: means of pixels.
 Json ToJson(const Environment& probe) {
   int step = 1;
   while (probe.width / step > 512 && probe.width % (2 * step) == 0 &&

@@ -46,8 +46,8 @@ MeasuredData EncodeMeasured(const BrdfTable& table);
 inline constexpr int kMostNodes = 432;
 MeasuredData EncodeMeasured(const NodeBrdf& brdf);
 
-// Of more than kMostSamples those spread evenly over their order, so that a page stays below 2 MB.
-// Throws Error unless the samples have directions.
+// Encodes at most kMostSamples, spread evenly over the order of the samples, so that a page stays
+// below 2 MB. Throws Error unless the samples have directions.
 inline constexpr int kMostSamples = 40000;
 MeasuredData EncodeMeasured(const BrdfSamples& samples, double max_theta, bool anisotropic);
 

@@ -29,8 +29,8 @@ struct ShaderTables {
 // Throws Error for a model whose parameters are not finite and >= 0, or too large for floats.
 ShaderTables MakeShaderTables(const FactorModel& model, bool sampled);
 
-// What a shader's file is written in: GLSL ES 3.00 (WebGL 2, and desktop GLSL 3.30), or HLSL of
-// shader model 4 or newer.
+// Language of a shader's file: GLSL ES 3.00 (WebGL 2, and desktop GLSL 3.30), or HLSL of shader
+// model 4 or newer.
 enum class ShaderLanguage { kGlsl, kHlsl };
 
 // A model as functions of a shader: trilobe_eval, trilobe_pdf and trilobe_sample. A comment at the

@@ -62,7 +62,7 @@ std::optional<int> WaitFor(pid_t pid, double max_seconds) {
   while (std::chrono::steady_clock::now() < end) {
     int status = 0;
     const pid_t ended = waitpid(pid, &status, WNOHANG);
-    // Where whoever started this program ignores SIGCHLD, no status is kept; the picture tells.
+    // No status is kept if the parent process ignores SIGCHLD; then the picture tells.
     if (ended == pid || (ended < 0 && errno == ECHILD)) return status;
     std::this_thread::sleep_for(kPause);
   }

@@ -40,7 +40,7 @@ class RadianceReader {
   RadianceReader(std::string_view bytes, const std::string& source)
       : bytes_(bytes), source_(source) {}
 
-  // Up to the pixels. False where this is no such picture.
+  // Reads up to the pixels. False if this is no such picture.
   bool ReadHeader(int* width, int* height) {
     if (!bytes_.starts_with("#?")) return false;
     bool has_format = false;

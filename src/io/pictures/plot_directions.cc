@@ -25,7 +25,7 @@ struct Incidence {
   std::vector<std::vector<double>> points;  // x, y [degrees], value; NaN for 0
 };
 
-// As seen along the normal, light from the left, its mirror direction to the right.
+// Position as seen along the normal, light from the left, its mirror direction to the right.
 std::vector<double> PointOf(const SphericalAngles& at, double rho) {
   const double azimuth = std::remainder(at.phi_o - at.phi_i, 2 * kPi);
   const double theta_o = RadiansToDegrees(at.theta_o);

@@ -74,15 +74,15 @@ std::string PanelRows::Script(int top, int canvas) const {
   return script;
 }
 
-// --- What they show ------------------------------------------------------------------------------
+// --- Contents ------------------------------------------------------------------------------------
 
 namespace {
 
-// Of the light through a table: what its first or its last entries have together, for them not to
-// be drawn as the others are. They may be anything.
+// End entries of a table that carry together less than this share of its light are dotted, as they
+// may be anything.
 constexpr double kHardlyAny = 2e-3;
 
-// Of the panels of D, F and G.
+// Titles and setups of the panels of D, F and G.
 constexpr const char* kPanelTitles[] = {"D, distribution of facets", "F, Fresnel factor",
                                         "G, shadowing and masking"};
 constexpr const char* kPanelSetups[] = {
@@ -107,13 +107,13 @@ std::string LobeName(const LobeLight& light, int lobe) {
          (light.nearly_diffuse[lobe] ? " (nearly diffuse)" : "");
 }
 
-// What stands behind the name of a lobe that is dark.
+// Text behind the name of a lobe that is dark.
 const char* AbsenceOf(const FactorModel& model, int lobe) {
   return ReflectsNothing(model, lobe) ? " (s = 0)" : "";
 }
 
-// Which entries matter: those that data were seen of, and through which light goes. Those of D near
-// theta_h = 0 have little light, as they are few directions, and are what is seen of a highlight.
+// Whether entries matter: they are observed, and light goes through them. Entries of D near theta_h
+// = 0 get little light, as they are few directions, but are what is seen of a highlight.
 std::vector<bool> EntriesThatMatter(const ModelFile& file, const LobeLight& light, Factor factor,
                                     int index) {
   const int size = file.model.spec().table_size(factor);
@@ -188,7 +188,7 @@ std::string Curves(const ModelFile& file, const LobeLight& light, Factor factor,
     std::vector<std::vector<double>> rows;  // abscissa, value, value where it does not matter
     for (int i = 0; i < size; ++i) {
       const double degrees = RadiansToDegrees(spec.axis(factor).Theta(i));
-      // What is less than the axis shows runs along it, what is more is left out.
+      // Values below the axis run along it, values above it are left out.
       if (table[i] > range.high) beyond = std::max(beyond, table[i]);
       const double value = table[i] > range.high ? kGap : std::max(table[i], range.low);
       const bool dotted =
@@ -233,7 +233,7 @@ std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Fa
   const ModelSpec& spec = file.model.spec();
   const TableSharing& sharing = spec.sharing(factor);
   std::vector<Panel> panels;
-  // Of many curves, as many panels as there are lobes.
+  // Many curves get as many panels as there are lobes.
   const bool by_lobe = sharing.per_lobe && sharing.per_channel && spec.lobes > 1;
   for (int m = 0; m < (by_lobe ? spec.lobes : 1); ++m) {
     std::vector<int> tables;

@@ -99,7 +99,7 @@ std::string Map(const ModelFile& file, const LobeLight& light, Factor factor, in
   std::vector<float> disc = DiscOf(file, factor, index);
   const bool is_D = factor == Factor::kD;
   const std::string range = ColorRange(disc, is_D);
-  // What is darker than the scale has its darkest colour; a logarithm has no 0.
+  // Values below the scale get its darkest colour; a logarithm has no 0.
   if (is_D) {
     for (float& value : disc) value = std::max(value, std::numeric_limits<float>::min());
   }

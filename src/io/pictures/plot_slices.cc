@@ -21,15 +21,15 @@ constexpr int kCurves = std::size(kColors);
 constexpr int kWidth = 2000;  // pixels
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// --- Of a table ----------------------------------------------------------------------------------
+// --- Tables --------------------------------------------------------------------------------------
 
 constexpr double kThetaD[kCurves] = {5, 25, 45, 65, 80};  // degrees; the bins that begin there
 
-// How a bin is drawn: as all are, as one that is hardly seen, as one without measured value.
+// Style of a bin: of most bins, of one that is hardly seen, of one without measured value.
 enum Way : uint8_t { kPlain, kPale, kDotted, kWays };
 constexpr int kColumns = 2 * kWays;  // of a theta_d: the measured value in its way, the fitted one
 
-// Of all bins of theta_h at each kThetaD, and the middle of phi_d.
+// Slices through all bins of theta_h, at each kThetaD and the middle of phi_d.
 class TableSlices {
  public:
   TableSlices(const BrdfTable& measured, const BrdfTable& fitted)
@@ -82,7 +82,7 @@ class TableSlices {
     return rows;
   }
 
-  // What stands below the panels.
+  // Text below the panels.
   std::string Note() const {
     std::string note;
     if (any_pale_) {
@@ -195,7 +195,7 @@ constexpr Row kRows[] = {
      }},
 };
 
-// Up to kCurves of the grid's thetas, evenly, the largest that was measured among them.
+// At most kCurves of the grid's thetas, evenly, the largest that was measured among them.
 std::vector<double> ThetasOf(const NodeTable& table) {
   const int last = std::min(static_cast<int>(table.max_theta / table.grid.ThetaStep() + 1e-6),
                             table.grid.thetas - 1);
@@ -279,7 +279,7 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
   DrawPng(path, kWidth, 1400, script);
 }
 
-// --- Of scattered samples on no grid -------------------------------------------------------------
+// --- Scattered samples on no grid ----------------------------------------------------------------
 
 namespace {
 

@@ -51,9 +51,10 @@ constexpr Rgb kDarkBackground = {0.012, 0.013, 0.016};  // linear
 constexpr Rgb kLightBackground = {1, 1, 1};
 constexpr Rgb kNotMeasured = {0.6, 0.6, 0.6};
 
-// From white by yellow and red to dark, as differences grow, legible to the colour-blind
+// Colours from white by yellow and red to dark, as differences grow, legible to the colour-blind
 // (ColorBrewer YlOrRd), in sRGB codes / 255: the same colours for the same differences in all
-// pictures. What cannot be seen is nearly white, what can be seen side by side is orange.
+// pictures. Differences that cannot be seen are nearly white, those that are seen side by side are
+// orange.
 struct DifferenceStop {
   double delta_e;
   Rgb color;
@@ -350,7 +351,7 @@ AppearanceOptions Enlarge(AppearanceOptions options, double times) {
   return options;
 }
 
-// Of the sphere that fits are judged by.
+// Text on the sphere that fits are judged by.
 std::string MeasureOf(const AppearanceOptions& options) {
   const std::string size = std::to_string(options.size);
   return size + " x " + size + " pixels under " + std::to_string(options.lights) +

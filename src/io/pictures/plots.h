@@ -77,7 +77,7 @@ void DrawMeasured(const BrdfTable& table, const std::string& path);
 // direction.
 void DrawPairs(const Measurement& scattered, const std::string& path);
 
-// Where scattered samples lie: a polar map of wo for each of up to nine theta_i, steps of 5
+// Directions of scattered samples: a polar map of wo for each of up to nine theta_i, steps of 5
 // degrees, light from the left; the colour is the mean value of the channels.
 void DrawDirections(const Measurement& scattered, const std::string& path);
 

@@ -6,7 +6,7 @@
 
 namespace trilobe {
 
-// What stands below pictures that are written without gnuplot, which draws all other text.
+// Captions of pictures that are written without gnuplot, which draws all other text.
 enum class Word { kMeasured, kFitted, kModel, kFile };
 
 // A word as rows of pixels of equal length, from the top, each with a code of its ink.

@@ -68,7 +68,7 @@ class MeasuredDirections {
   bool everything_ = false;
 };
 
-// Clamped at 0, as a renderer does.
+// The BRDF clamped at 0, as a renderer does.
 AngularBrdf Clamped(const AngularBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const HalfDiffAngles& angles, const Cosines& cosines) {
@@ -78,7 +78,7 @@ AngularBrdf Clamped(const AngularBrdf& brdf) {
   };
 }
 
-// 0 at unmeasured directions.
+// The BRDF, 0 at unmeasured directions.
 BrdfFunction OfMeasured(const AngularBrdf& brdf, const MeasuredDirections& counts) {
   return [&brdf, &counts](const DirectionPair& pair) {
     const HalfDiffAngles angles = ToHalfDiff(pair);
@@ -152,7 +152,7 @@ BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
   return data;
 }
 
-// Of a picture with so many pixels in a row.
+// Whether a pixel is beyond kGrazingAngleDegrees on a sphere `size` pixels wide.
 bool AtRim(size_t pixel, int size) {
   const auto place = [size](size_t k) { return (static_cast<double>(k) + 0.5) / size * 2 - 1; };
   return std::hypot(place(pixel % size), place(pixel / size)) >

@@ -77,9 +77,9 @@ double RadicalInverse(unsigned n) {
   return inverse;
 }
 
-// Where a running sum (with its total last) first exceeds a share of the total, with the fraction
-// within the entry. The fraction stays far enough below 1 that rounding does not lead to the next
-// entry, which may have no light.
+// Position in a running sum (with its total last) at which it first exceeds a share of the total,
+// with the fraction within the entry. The fraction stays far enough below 1 that rounding does not
+// lead to the next entry, which may have no light.
 double Find(const double* sums, int size, double share) {
   const double wanted = share * sums[size - 1];
   const int i =

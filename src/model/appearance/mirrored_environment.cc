@@ -35,7 +35,7 @@ const Rgb& Reflected(const Environment& environment, double x, double y) {
 }
 
 std::vector<HalfCell> MakeCells() {
-  // Of the edge of a ring [rad].
+  // Polar angle of the edge of a ring [rad].
   const auto theta = [](double ring) { return kPi / 2 * std::pow(ring / kRings, 2.5); };
   std::vector<HalfCell> cells;
   for (int ring = 0; ring < kRings; ++ring) {

@@ -58,7 +58,7 @@ TRILOBE_ALWAYS_INLINE void MirroredEnvironment::Level::AddAt(double x, double y,
   const int c = std::min(static_cast<int>(column), last);
   const int r = std::min(static_cast<int>(row), last);
   const double s = column - c, t = row - r;
-  // Of the corners, clockwise from the upper left.
+  // Weights of the corners, clockwise from the upper left.
   const double weights[] = {share * (1 - t) * (1 - s), share * (1 - t) * s, share * t * s,
                             share * t * (1 - s)};
   const int squares[] = {r * size + c, (last - c) * size + r, (last - r) * size + last - c,

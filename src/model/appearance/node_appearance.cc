@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kOneStep = 1.0 / 255;  // of an 8-bit picture
 
-// Clamped at 0, as a renderer does.
+// The BRDF clamped at 0, as a renderer does.
 SphericalBrdf Clamped(const SphericalBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const SphericalAngles& at) {

@@ -34,7 +34,7 @@ class NodeJudge {
   NodeJudge(const NodeBrdf& measured, const SphericalBrdf& about_right,
             const AppearanceOptions& options);
 
-  // As a PSNR [dB], the higher the better. NaN where values overflow.
+  // Returns a PSNR [dB], the higher the better; NaN where values overflow.
   double operator()(const SphericalBrdf& fitted) const;
 
  private:

@@ -83,7 +83,7 @@ std::vector<Sums> SumsOf(std::span<const SurfacePoint> points, const MirroredEnv
       if (!(half[2] > 0)) continue;
       const Cosines cosines = CosinesOver(points[k], MirroredEye(half));
       if (!(cosines.i > 0)) continue;
-      // As in AnglesOver; the light is the eye's mirror image at the half vector.
+      // Same as AnglesOver; the light is the eye's mirror image at the half vector.
       const double sine2 = half[0] * half[0] + half[1] * half[1];
       const bool on_left = normal[1] * half[0] >= normal[0] * half[1];
       const HalfDiffAngles angles = {cell.theta, AngleOfSine2(sine2),

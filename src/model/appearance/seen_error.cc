@@ -89,7 +89,7 @@ void SeenErrorSum::Add(const Rgb& measured, const Rgb& fitted, bool grazing, dou
   sum.pixels += weight;
   sum.delta_e += weight * difference;
   sum.squares += weight * difference * difference;
-  // By the colour before clipping: clipping turns orange into yellow.
+  // Uses the colour before clipping: clipping turns orange into yellow.
   sum.color_squares +=
       weight * difference * difference * ColorShare(ToLab(measured), ToLab(fitted));
   sum.lightness += weight * (lab_b[0] - lab_a[0]);

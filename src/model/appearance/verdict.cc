@@ -38,7 +38,7 @@ SeenPlace PlaceOf(const SeenError& error) {
   return place;
 }
 
-// In one region, or in all.
+// Kind of error in one region, or in all.
 Fault FaultAt(const SeenError& error, SeenPlace place) {
   constexpr double kMost = 0.5;
   PlaceError at = error.at(place);
@@ -96,7 +96,7 @@ std::string HowVisible(Visibility visibility) {
   return "";
 }
 
-// Of what was compared.
+// Words on what was compared.
 std::string SeenWords(const Verdict& verdict) {
   const std::string place = Where(verdict.place), what = What(verdict.fault);
   std::string words = HowVisible(verdict.visibility);
@@ -105,7 +105,7 @@ std::string SeenWords(const Verdict& verdict) {
   return words + (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);
 }
 
-// "", or what is expected of all directions.
+// Words on what is expected of all directions, or "".
 std::string WholeWords(const std::optional<WholeSphere>& whole) {
   if (!whole) return "";
   char text[80];

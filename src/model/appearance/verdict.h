@@ -23,23 +23,23 @@ namespace trilobe {
 // The thresholds were measured on patches, not spheres; docs/appearance.md tests them on images.
 enum class Visibility { kNone, kHardly, kVisible, kPlain };
 
-// What is wrong in the region that differs most: `place`, or kRest if none stands out.
+// Kind of error in the region that differs most: `place`, or kRest if none stands out.
 enum class Fault { kDifferent, kTooDark, kTooBright, kWrongColor };
 
-// What a verdict rests on.
+// Evidence for a verdict.
 struct Basis {
   double measured_share = 1;        // of what a renderer reads (MeasuredShare)
   int samples = 0, parameters = 0;  // of the fit
   bool black = false;               // the measurement reflects nothing
-  // What is expected of all directions, also those that were not measured; nothing if unknown.
+  // Error expected over all directions, including those not measured; nothing if unknown.
   std::optional<WholeSphere> whole = {};
 
   bool operator==(const Basis&) const = default;
 };
 
-// What was compared is what was measured. Nothing follows for the whole material where less than
-// half of what a renderer reads was measured, by fewer samples than the model has parameters, or
-// where all is black.
+// A verdict on what was measured. It says nothing about the whole material if less than half of
+// what a renderer reads was measured, if the model has more parameters than there were samples, or
+// if all is black.
 struct Verdict {
   Visibility visibility = Visibility::kNone;
   SeenPlace place = SeenPlace::kRest;
@@ -47,8 +47,9 @@ struct Verdict {
   Basis basis = {};
 
   bool of_the_whole() const;
-  // At least kHardly, kVisible, kPlain where the whole is expected to differ by more than twice the
-  // mean that the one before allows, 2, 4.6, 10; such estimates are right within a factor of two.
+  // At least kHardly, kVisible or kPlain if the mean difference expected of the whole exceeds 2,
+  // 4.6 or 10, twice the bounds for what was compared; such estimates are right within a factor of
+  // two.
   Visibility visibility_of_whole() const;
   bool operator==(const Verdict&) const = default;
 };
@@ -58,7 +59,7 @@ Verdict VerdictOf(const SeenError& error, const Basis& basis = {});
 // "cannot be told apart"; "visible in highlights: too dark where it was measured, at 80 % of what a
 // renderer reads; the rest is a guess, ..."; "no verdict: ..."
 std::string Words(const Verdict& verdict);
-// Of visibility_of_whole(); "unknown" unless of_the_whole().
+// Name of visibility_of_whole(); "unknown" unless of_the_whole().
 std::string VisibilityName(const Verdict& verdict);
 std::string NameOf(Visibility visibility);  // "none", "hardly", "visible", "plain"
 std::string NameOf(Fault fault);            // "different", "too_dark", ...
@@ -70,18 +71,18 @@ struct FitFacts {
   // The form is the default one of an isotropic table, and --model=auto could be asked for.
   bool may_choose_form = false;
   bool default_solver = true;
-  double irreducible = 0;  // of E: what exchanged directions differ by in the data
-  // Of the energy: what an isotropic model of anisotropic data leaves out; nothing where it is
-  // none.
+  double irreducible = 0;  // share of E due to exchanged directions that differ in the data
+  // Share of the energy that an isotropic model of anisotropic data leaves out; nothing for other
+  // models.
   std::optional<double> left_out = {};
-  // The largest directional albedo, and its theta_i [rad], of a model that makes light.
+  // The largest directional albedo of a model that makes light, and its theta_i [rad].
   double glow = 0, glow_theta_i = 0;
-  // By how much the directional albedo leaves the course that it has around, as a share, if even
-  // light shows that; and at which theta_i [rad].
+  // Relative deviation of the directional albedo from its course over neighbouring angles, if
+  // uniform light shows it; and its theta_i [rad].
   double ripple = 0, ripple_theta_i = 0;
 };
 
-// What to do or know, most urgent first.
+// Things to do or to know, most urgent first.
 enum class Advice {
   kGoOn,          // it was interrupted
   kIterate,       // a limit stopped it

@@ -48,7 +48,7 @@ Fold FoldAt(double u, double v) {
 }
 
 const double kLean = DegreesToRadians(30);
-// Of the flat cloth, in the world.
+// Axes of the flat cloth in the world: u, v and the normal.
 const Direction kU = {1, 0, 0}, kV = {0, std::cos(kLean), -std::sin(kLean)},
                 kUp = {0, std::sin(kLean), std::cos(kLean)};
 
@@ -70,7 +70,7 @@ Direction Combined(double u, double v, double up) {
   return sum;
 }
 
-// Of unit length, along the flat cloth.
+// A unit vector in the plane of the flat cloth.
 struct Thread {
   double u = 1, v = 0;
 };

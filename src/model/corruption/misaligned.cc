@@ -11,7 +11,7 @@
 namespace trilobe {
 namespace {
 
-// Rotated from z towards x.
+// A direction rotated from z towards x.
 Direction Turned(const Direction& w, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * w[0] + s * w[2], w[1], c * w[2] - s * w[0]};

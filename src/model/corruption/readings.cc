@@ -16,7 +16,7 @@ namespace {
 
 bool IsAbove(const DirectionPair& pair) { return pair.wi[2] > 0 && pair.wo[2] > 0; }
 
-// Turned about the normal, so that phi_i is 0.
+// The pair turned about the normal, so that phi_i is 0.
 DirectionPair WithLightAtAzimuthZero(const DirectionPair& pair) {
   const double length = std::hypot(pair.wi[0], pair.wi[1]);
   if (length == 0) return pair;

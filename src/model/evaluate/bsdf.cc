@@ -29,7 +29,7 @@ void CheckAsMany(size_t wi, size_t others, size_t results) {
               " results; give as many of each");
 }
 
-// Above the surface and not NaN.
+// Whether a direction is finite and above the surface.
 template <typename Vector>
 bool IsAbove(const Vector& w) {
   return w[2] > 0 && std::isfinite(w[0]) && std::isfinite(w[1]) && std::isfinite(w[2]);

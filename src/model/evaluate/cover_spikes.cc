@@ -18,10 +18,10 @@ namespace {
 
 using Rgb4 = Four<float>;
 
-// The largest weight that is left at what is measured; between, it may be half as large again.
+// The largest weight left at the measured directions; between them it may be half as large again.
 constexpr double kMostWeight = 2.5;
 
-// What is measured: up to this theta_i [rad], ...
+// Weights are measured up to this theta_i [rad], ...
 constexpr double kLastTheta = DegreesToRadians(85.1);
 // ... beyond kGrazing in finer steps of theta_i [rad] and of s.
 constexpr double kGrazing = DegreesToRadians(70);
@@ -31,7 +31,7 @@ constexpr int kMostSamples = 256;                 // ... and of all s at most
 
 constexpr int kSweeps = 10;
 
-// How much more light the table of one theta_i may have than it had.
+// Largest factor by which the light of the table of one theta_i may grow.
 constexpr double kMostGrowth = 2;
 
 // The lobes of an isotropic model, read from fine tables: D over the root of theta_h, F and G / cos
@@ -177,7 +177,7 @@ class Cover {
     double cos_i, cos_h, sin_h, phi_max, cosines, sines;
   };
 
-  // What the channel that has most reflects, between the nodes.
+  // Computes the values of the lobes between the nodes, in the channel where they are largest.
   void Measure() {
     const std::vector<double>& theta_i = nodes_.theta_i;
     for (int ring = 0; ring + 1 < static_cast<int>(theta_i.size()); ++ring) {

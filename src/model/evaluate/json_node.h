@@ -61,7 +61,7 @@ class JsonNode {
     return json_.number();
   }
 
-  // From -2 to 2.
+  // An exponent, from -2 to 2.
   double Exponent() const {
     CheckType(Type::kNumber, "a number");
     if (!(std::abs(json_.number()) <= 2)) Fail("must be from -2 to 2, not " + NumberText());

@@ -43,7 +43,7 @@ HalfVectorNodes NodesOf(const ModelSpec& spec) {
   return nodes;
 }
 
-// At least what the table may hold.
+// Upper bound on the values of the table.
 double BoundOf(const FactorModel& model) {
   const double least_cosine = std::cos(kGrazingTheta);
   std::array<double, 3> largest{};
@@ -79,7 +79,7 @@ template <typename Real>
 HalfVectorTable<Real> SamplingTable<Real>::Make(const PreparedModel<Real>& prepared) const {
   HalfVectorNodes nodes = NodesOf(model_.spec());
   std::vector<float> values = TabulatedLobes(prepared, nodes);
-  // More nodes of s where covering spikes would cost too much light.
+  // Nodes of s are added while covering spikes would cost too much light.
   while (!prepared.anisotropic() && !CoverSpikes(model_, diffuse_albedo_, nodes, &values) &&
          4 * nodes.s - 3 <= HalfVectorTable<Real>::kMaxS) {
     nodes.s = 4 * nodes.s - 3;

@@ -12,8 +12,8 @@
 
 namespace trilobe {
 
-// What Bsdf draws half vectors by: what the lobes reflect, at each of several wi. The first call of
-// Of makes it, in up to some seconds. Thread-safe.
+// Reflected light of the lobes at each of several wi, by which Bsdf draws half vectors. The first
+// call of Of computes it, which takes up to some seconds. Thread-safe.
 template <typename Real>
 class SamplingTable {
  public:

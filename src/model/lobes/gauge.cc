@@ -111,7 +111,7 @@ Balance MakeBalance(std::span<const double> coverage, const LobeLight& light,
                   .four_s = std::vector<Rgb>(spec.lobes),
                   .F_gain = std::vector<double>(spec.num_tables(Factor::kF), 1),
                   .G_gain = std::vector<double>(spec.num_tables(Factor::kG), 1)};
-  // Also for G, although its scale is set later, to keep s in range.
+  // Done for G, too, although its scale is set later, to keep s in range.
   ForEachObservedTable(coverage, model, [&](Factor factor, int t) {
     if (factor == Factor::kD) return;
     const std::span<const double> table = model.table(factor, t);

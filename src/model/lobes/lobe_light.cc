@@ -98,8 +98,8 @@ double Total(const LobeLight& light) {
   return total;
 }
 
-// Which entries of these lobes' tables are observed, by factor and entry: in all tables of F and G,
-// and the lobes' tables of D, alike, except for channels without weight.
+// Whether entries of these lobes' tables are observed, by factor and entry: in all tables of F and
+// G, and the lobes' tables of D, alike, except for channels without weight.
 using Observed = std::array<std::vector<bool>, std::size(kFactors)>;
 Observed ObservedBy(std::span<const int> lobes, std::span<const double> coverage,
                     const FactorModel& model) {

@@ -121,7 +121,7 @@ LobeMatch MatchLobes(const ModelFile& reference, const ModelFile& model) {
   const std::vector<Rgb> reference_light = LightOf(reference), light = LightOf(model);
   const auto rows = reference_light.size(), columns = light.size();
   const size_t size = std::max(rows, columns);
-  // Of a lobe without a partner, 0.
+  // A lobe without a partner has a match of 0.
   std::vector<std::vector<double>> match(size, std::vector<double>(size)), weighted = match;
   for (size_t m = 0; m < rows; ++m) {
     for (size_t n = 0; n < columns; ++n) {

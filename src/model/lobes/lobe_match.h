@@ -7,15 +7,15 @@
 
 namespace trilobe {
 
-// How alike the lobes of two models are, from 0 to 1 (docs/study.md). All of it is independent
-// of the gauge and of the order of the lobes.
+// Similarity of the lobes of two models, from 0 to 1 (docs/study.md). All of it is independent of
+// the gauge and of the order of the lobes.
 struct LobeMatch {
   // The mean match of all lobes of both models with their partners, weighted by the light that
   // they reflect (LobeLight). 1 if no lobe of either reflects any.
   double agreement = 1;
   // The partner in `model` of each lobe of `reference`, or -1 where `model` has fewer.
   std::vector<int> lobe;
-  // How alike the two are, 0 without a partner: the light that they share, in each channel the
+  // Similarity of the two, 0 without a partner: the light that they share, in each channel the
   // smaller of the two, over the larger, summed over the channels; times the cosines between their
   // tables of D, F and G. A lobe that is five times as strong matches to 0.2 at most.
   std::vector<double> match;

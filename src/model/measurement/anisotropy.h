@@ -5,7 +5,7 @@
 
 namespace trilobe {
 
-// How much a material changes when rotated about its normal.
+// Change of a material when rotated about its normal.
 struct Anisotropy {
   int samples = 0;   // those that have another one with the material turned
   double share = 0;  // fraction of energy not explained by the mean over rotations

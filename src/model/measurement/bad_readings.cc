@@ -275,7 +275,8 @@ DarkNoise DarkNoiseOf(const BrdfTable& table, const std::vector<bool>& valid, in
     return MedianOf(begin(k), begin(k + 1), [](const FourReadings& four) { return four.signal; });
   };
   const auto noise = [&](int k) {
-    // Of normal numbers, 0.6745 times the standard deviation, here of 1 + 9 + 9 + 1 values.
+    // The median of absolute normal numbers is 0.6745 times their standard deviation; a difference
+    // has the variance of 1 + 9 + 9 + 1 values.
     return MedianOf(begin(k), begin(k + 1),
                     [](const FourReadings& four) { return std::abs(four.difference); }) /
            (0.6745 * std::sqrt(20.0));

@@ -38,12 +38,12 @@ double LightOf(const std::vector<Outlier>& outliers, const BrdfSamples& samples)
 // The medians of their absolute values, over each quarter of all groups of four from the darkest to
 // the brightest, give the noise there.
 struct DarkNoise {
-  double deviation = 0;  // standard deviation of b, of the second quarter: the darkest have been
-                         // cut off at 0
-  double relative = 0;   // noise over signal in the darkest quarter
-  double rise = 0;       // that, over noise over signal in the third: 1 where noise is a share of b
+  double deviation = 0;    // standard deviation of b, of the second quarter: the darkest have been
+                           // cut off at 0
+  double relative = 0;     // noise over signal in the darkest quarter
+  double rise = 0;         // `relative` over the third quarter's: 1 where noise is a share of b
   double alternating = 0;  // share of successive differences of the darkest that differ in sign:
-                           // 3/4 of noise, and few of a smooth table of few bins
+                           // 3/4 for noise, few for a smooth table of few bins
   bool IsThere() const { return relative > 0.05 && rise > 1.5 && alternating > 0.6; }
 };
 DarkNoise DarkNoiseOf(const BrdfTable& table, int channel);

@@ -248,7 +248,7 @@ class PlaneScan {
 
   void Add(double theta, double value) { values_.emplace_back(theta, value); }
 
-  // Where both sides were scanned; else 0.
+  // A lower estimate of the albedo if both sides were scanned; else 0.
   double Albedo() {
     constexpr size_t kFewestSamples = 8;
     std::ranges::sort(values_);
@@ -272,7 +272,7 @@ class PlaneScan {
     return sum;
   }
 
-  // Between samples linearly; 0 beyond them.
+  // Linear interpolation between samples; 0 beyond them.
   double At(double theta) const {
     const auto next = std::ranges::lower_bound(values_, std::pair(theta, 0.0));
     if (next == values_.end() || (next == values_.begin() && next->first > theta)) return 0;

@@ -5,7 +5,7 @@
 
 namespace trilobe {
 
-// Both, with a multiplicity each.
+// All samples of both, with a multiplicity each.
 inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added) {
   const size_t size = samples.rho.size() + added.rho.size();
   samples.multiplicity.reserve(size);

@@ -87,7 +87,7 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
   const double ratio = InterpolatedQuantile(0.5, middle);
   if (!(ratio < kDark)) return {};
 
-  // By theta_d: the highlight relative to the light at the same theta_h.
+  // Highlight relative to the light at the same theta_h, by theta_d.
   std::array<std::vector<double>, kLitDegrees> ratios;
   for (const auto& [degree, step, value] : highlight) {
     const double bright = around[step] > 0 ? around[step] : further[step];

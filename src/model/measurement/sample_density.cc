@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kThetas = 12, kAzimuths = 12;
 
-// Of the angles of two directions, in either order. Angles at a bound of cells, as those of grids
-// are, lie above it.
+// Cell of two directions, in either order. Angles at a bound between cells, as on regular grids,
+// belong to the upper one.
 int CellOf(const SphericalAngles& at) {
   const auto part = [](double share, int parts) {
     constexpr double kRounding = 1e-6;

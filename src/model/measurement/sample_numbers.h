@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-// Which of so many samples Thinned takes, if they are scattered, and EvenlySpread; ascending.
+// Numbers of the samples that Thinned takes if they are scattered, and EvenlySpread; ascending.
 std::vector<int> ThinnedNumbers(int size, int stride);
 std::vector<int> EvenlySpreadNumbers(int size, const MerlGrid& grid, int count);
 

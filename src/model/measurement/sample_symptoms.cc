@@ -23,7 +23,7 @@ namespace {
 constexpr double kSameValue = 1e-6;  // relative
 constexpr int kMostSamples = 20000;  // that a symptom looks at
 
-// From -pi to pi; 0 on the side of the light.
+// Azimuth from -pi to pi; 0 on the side of the light.
 double AzimuthFromLight(const SphericalAngles& at) {
   return std::remainder(at.phi_o - at.phi_i, 2 * kPi);
 }
@@ -406,10 +406,10 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
     told.push_back(TellReflected(some));
     told.push_back(TellLargest(scattered.samples));
     told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
-    // Where directions lack a sign, no other sentence about directions is right.
+    // If directions lack a sign, no other sentence about directions is right.
     if (!scattered.anisotropic && told.back().empty()) {
       told.push_back(TellHighlight(some));
-      // Nor where the highlight is out of place.
+      // The same holds if the highlight is out of place.
       if (told.back().empty()) {
         told.push_back(TellCosine(some));
         told.push_back(TellElevation(some));

@@ -12,12 +12,12 @@ namespace trilobe {
 // Symptoms of faults in scattered samples, as goniometers and spreadsheets have them;
 // docs/robustness.md gives their reliability. All take samples with directions.
 
-// As for tables (symptoms.h), of samples whose exchanged directions were measured, too, or lie
-// within 4 degrees of those of another sample.
+// Same as for tables (symptoms.h), over samples whose exchanged directions were measured, too, or
+// lie within 4 degrees of those of another sample.
 CosineSymptom CosineOf(const BrdfSamples& samples);
 
-// Where the brightest sample of each incidence stands, of incidences with a highlight: whose
-// brightest sample, at theta_i of 20 degrees and more, is at least three times the median.
+// Position of the brightest sample of each incidence with a highlight: at theta_i of at least 20
+// degrees, and above three times the median.
 struct HighlightSymptom {
   int incidences = 0;  // with a highlight
   int at_light = 0;    // of these, with it within 30 degrees of the azimuth of the light, and not
@@ -31,7 +31,7 @@ struct HighlightSymptom {
 };
 HighlightSymptom HighlightOf(const BrdfSamples& samples);
 
-// How much values change with the azimuth near the normal, where azimuths are close to one another,
+// Variation of values with the azimuth near the normal, where azimuths are close to one another,
 // and near the horizon: medians over incidences from 30 to 60 degrees of log(90th / 10th
 // percentile) at theta_o up to 25 and from 65 degrees on, where no mirror direction is. Angles from
 // the horizon in the place of those from the normal exchange the two.

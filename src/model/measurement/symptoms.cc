@@ -78,7 +78,7 @@ QuantizationSymptom QuantizationOf(const BrdfTable& table) {
   const std::vector<bool> valid = ValidBins(table);
   const GridCosines cosines(grid);
   std::vector<double> signals;
-  // Not the exchanged ones, which may be equal.
+  // Leaves out exchanged directions, whose values may be equal.
   for (int row = 0; row < grid.theta_h * grid.theta_d; row += 3) {
     for (int bin = row * grid.phi_d; bin < row * grid.phi_d + (grid.phi_d + 1) / 2; ++bin) {
       const double signal = valid[bin] ? table.Value(1, bin) * cosines(bin).i : 0;
@@ -118,13 +118,14 @@ NoiseSymptom NoiseOf(const BrdfTable& table) {
   }
   constexpr size_t kFewest = 1000;
   if (differences.size() < kFewest) return {};
-  // Of normal numbers, 0.6745 times the standard deviation, here of 1 + 9 + 9 + 1 values.
+  // The median of absolute normal numbers is 0.6745 times their standard deviation; a difference
+  // has the variance of 1 + 9 + 9 + 1 values.
   return {.relative = Quantile(&differences, 0.5) / (0.6745 * std::sqrt(20.0))};
 }
 
 namespace {
 
-// Only the part in the highlight, which is all that FindOwnShadow examines.
+// The shadow of the part in the highlight, which is all that FindOwnShadow examines.
 OwnShadow ShadowOf(const BrdfTable& table) {
   const MerlGrid& grid = table.grid;
   const std::vector<bool> valid = ValidBins(table);

@@ -167,7 +167,7 @@ class SteppedAngles {
 // Another angle and that which may have been filled in, in one number, and the sample.
 using GridSample = std::pair<uint64_t, int>;
 
-// Which of the angles of a kind, in ascending order, repeat the one before; empty if none does.
+// Whether each angle of a kind, in ascending order, repeats the one before; empty if none does.
 std::vector<bool> RepeatedAngles(const BrdfSamples& samples, const SteppedAngles& angle,
                                  const SteppedAngles& other, const SteppedAngles& another) {
   constexpr int kFewestAngles = 5, kFewestPlaces = 20;

@@ -263,7 +263,7 @@ namespace {
 
 constexpr int kSummedAtOnce = 64 * BatchEvaluator::kBatch;
 
-// Of samples [begin, end), without the constant.
+// E of samples [begin, end), without the constant.
 double ValueOf(const BatchEvaluator& reader, int begin, int end) {
   BatchEvaluator::Batch batch(reader);
   double sum = 0;

@@ -224,7 +224,7 @@ Order SetCells(int count, const SampleMaker& make, int num_threads, FoldedSample
   return order;
 }
 
-// What sample n reads with.
+// Sets the weights by which sample n reads tables.
 void SetWeights(const SampleStencils& at, bool exchanged, size_t n, FoldedSamples* folded) {
   folded->inverse_cosines[n] = at.inverse_cosines;
   for (int r = 0; r < folded->order.count(); ++r) {
@@ -238,7 +238,7 @@ void SetWeights(const SampleStencils& at, bool exchanged, size_t n, FoldedSample
 struct Run {
   std::vector<std::pair<Rgb, Rgb>> samples;
 
-  // What the first `count` become; adds to the sums over all.
+  // Merges the first `count` samples; adds to the sums over all.
   FoldedPart::Value Merge(size_t count, double* constant, double* measured_energy) const {
     FoldedPart::Value merged;
     for (int c = 0; c < kChannels; ++c) {

@@ -252,7 +252,7 @@ struct Objective::Prepared {
     return *folded_samples;
   }
 
-  // As part of the samples of a prior, if there is no fold.
+  // The samples as part of those of a prior, if they have no fold of their own.
   std::shared_ptr<const FoldedPart> Part() const {
     const std::lock_guard<std::mutex> lock(mutex);
     return folded_samples == nullptr ? as_part : nullptr;

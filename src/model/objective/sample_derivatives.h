@@ -28,7 +28,7 @@ class SampleDerivatives {
   static void Visit(const FactorModel& model, const SampleStencils& at, int channel,
                     const Visitor& add);
 
-  // Each once.
+  // Parameters with a derivative, each once.
   std::span<const int> touched() const { return touched_; }
   double operator[](int parameter) const { return values_[parameter]; }
 

@@ -6,7 +6,7 @@
 
 namespace trilobe {
 
-// How a sample reads the tables of a model with this spec.
+// Stencils by which a sample reads the tables of a model with this spec.
 inline SampleStencils StencilsOf(const ModelSpec& spec, const BrdfSamples& samples, int j) {
   if (samples.on_grid()) return GridStencils(spec, samples.grid, samples.bins[j]);
   return spec.anisotropic() ? ScatteredStencils(spec, samples.directions[j])

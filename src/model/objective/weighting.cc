@@ -204,7 +204,7 @@ double MeanReflectance(const BrdfSamples& samples, int num_threads) {
     double solid_angle = 1;
     for (int j = block * kBlock, row = -1; j < std::min(samples.size(), (block + 1) * kBlock);
          ++j) {
-      // Of a row of bins it is the same.
+      // All bins of a row have the same solid angle.
       if (of_bins && std::exchange(row, samples.bins[j] / samples.grid.phi_d) != row) {
         solid_angle = samples.SolidAngle(j);
       }

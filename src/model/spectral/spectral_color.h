@@ -9,7 +9,7 @@
 
 namespace trilobe {
 
-// From XYZ to linear sRGB (IEC 61966-2-1).
+// Matrix from XYZ to linear sRGB (IEC 61966-2-1).
 inline constexpr double kToSrgb[kChannels][3] = {{3.2404542, -1.5371385, -0.4985314},
                                                  {-0.9692660, 1.8760108, 0.0415560},
                                                  {0.0556434, -0.2040259, 1.0572252}};
@@ -30,7 +30,7 @@ class SpectralColor {
   static SpectralColor OfBands(std::span<const double> wavelengths, const std::string& source);
 
   const std::vector<double>& wavelengths() const { return wavelengths_; }
-  // What a unit of each wavelength adds to the colour; also below 0. [wavelengths]
+  // Contribution of a unit of each wavelength to the colour; may be below 0. [wavelengths]
   const std::vector<Rgb>& weights() const { return weights_; }
 
   // spectrum: [wavelengths]. Channels are below 0 for colours outside the gamut of sRGB.

@@ -10,7 +10,7 @@
 namespace trilobe {
 namespace {
 
-// Of a model made by TermModel::Of.
+// Indices of the diffuse term, and of the sets of F and G, in a model made by TermModel::Of.
 constexpr int kDiffuse = 0, kSetOfF = 1, kSetOfG = 2;
 
 // A model of a spec that keeps the terms and sets of `from` at their places, but for those that are

@@ -100,7 +100,7 @@ class LinearShadowing {
   std::vector<double> cosines_;  // [nodes]
 };
 
-// Where a function of [0, 1] with one minimum is lowest, to 1e-3 (Kiefer 1953).
+// Minimiser of a unimodal function on [0, 1], to 1e-3 (Kiefer 1953).
 double GoldenSection(const std::function<double(double)>& f) {
   const double ratio = (std::sqrt(5.0) - 1) / 2;
   double a = 0, b = 1, x = b - ratio, y = ratio;

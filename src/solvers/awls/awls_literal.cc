@@ -10,7 +10,7 @@
 namespace trilobe {
 namespace {
 
-// How a sample's value in one channel moves with an element: rho(x + delta) = rho + p1 delta + p2
+// Change of a sample's value in one channel with an element: rho(x + delta) = rho + p1 delta + p2
 // delta^2.
 struct Response {
   double p1 = 0, p2 = 0;

@@ -12,7 +12,7 @@ namespace trilobe {
 
 void Sweep::SweepInBlocks(const IterationRecord& last, const OnElement& on_block,
                           FactorModel* model) {
-  // What other parameters do to E: docs/solvers.md.
+  // Other numbers of sweeps are compared in docs/decisions/sweeps.md.
   constexpr int kElementSweeps = 3;
   if (last.iteration < kElementSweeps) {
     (*this)(on_block, model);

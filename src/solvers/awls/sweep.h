@@ -93,7 +93,7 @@ class SampleSweep : public Sweep {
 
   PhaseSeconds* const phases_;
   SampleLookups lookups_;
-  // Of amplitudes, of each range of tables of D that one stretch reads, and of F.
+  // Sums for amplitudes, for each range of tables of D that one stretch reads, and for F.
   std::vector<BlockEquations> sums_;
   ShadowingUpdates shadowing_;
 };

@@ -17,22 +17,22 @@ namespace {
 
 constexpr double kInitialLambda = 1e-2;  // against columns of J of length 1
 constexpr double kMinLambda = 1e-12, kMaxLambda = 1e16;
-// Along one column of J a step under this damping lowers E by less than 2 / lambda of it, however
-// much there is to gain.
+// Along one column of J, a step under this damping lowers E by less than the fraction 2 / lambda,
+// however much there is to gain.
 constexpr double kHeavyLambda = 1e3;
 constexpr double kMinGain = 1e-4;
 constexpr double kMaxFall = 1.0 / 3;  // of lambda after one step
-// Where H is indefinite, the least lambda that mends it is searched for by this factor.
+// Growth of lambda per try while H + lambda S^2 is indefinite, and the least lambda then.
 constexpr double kIndefiniteGrowth = 4, kMinIndefiniteLambda = 1e-4;
-// By this fraction of E a step that lowers it little does so.
+// Relative decrease of E below which progress counts as slow.
 constexpr double kLittleProgress = 1e-3;
-// Columns of J shorter than the root of this times the root mean square of their table's count as
-// that long for the damping.
+// Least squared length of a column of J in the damping, relative to the mean square of its table's
+// columns.
 constexpr double kMinSquaredLength = 1e-2;
 
-// Of the parameters of anisotropic models: D of all lobes first, azimuth by azimuth. An entry of D
-// has products with those of D that some sample reads together with it, its neighbours, and with
-// all of F, G and the amplitudes.
+// Elimination order of the parameters of anisotropic models: D of all lobes first, azimuth by
+// azimuth. An entry of D has products with those of D that some sample reads together with it, its
+// neighbours, and with all of F, G and the amplitudes.
 std::vector<size_t> EliminationOrder(const FactorModel& model) {
   const ModelSpec& spec = model.spec();
   std::vector<size_t> order;
@@ -173,7 +173,7 @@ bool JointStepper::Step() {
     return false;
   }
   const double f = 2 * gain - 1;
-  // Not at once to where the last H was indefinite: the next one is much like it.
+  // Does not return at once to where the last H was indefinite: the next one is much like it.
   lambda_ = std::max(
       {kMinLambda, indefinite_ / kIndefiniteGrowth, lambda_ * std::max(kMaxFall, 1 - f * f * f)});
   indefinite_ = 0;

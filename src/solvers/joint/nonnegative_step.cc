@@ -175,7 +175,7 @@ bool NonnegativeStep::SetStep(double lambda) {
     if (!factored_) return false;
   }
 
-  // Of those held all along, most are at 0 already.
+  // Most parameters that have been held all along are at 0 already.
   Eigen::VectorXd H_u = Eigen::VectorXd::Zero(static_cast<int>(n));
   for (size_t k = 0; k < n; ++k) {
     p_[k] = unit_[k] != 0 && binding_[k] && !in_base_[k] ? -z_[k] : 0;

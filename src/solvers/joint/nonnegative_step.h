@@ -55,18 +55,20 @@ class NonnegativeStep {
   void ForChunks(size_t count, const std::function<void(size_t, size_t)>& work) const;
 
   const QuadraticModel* at_ = nullptr;
-  // Of all parameters; scale, its entry of S, is 0 for one that cannot move, and so are
-  // unit = 1 / scale, and g, z = scale x, the step p and u = unit p.
+  // Vectors over all parameters. scale, the diagonal of S, is 0 for one that cannot move, and so
+  // are unit = 1 / scale, and g, z = scale x, the step p and u = unit p.
   std::vector<double> x_, scale_, unit_, g_, z_, p_, u_;
   std::vector<bool> binding_;
-  // Of the parameters that were free at the last factorisation: which, and their scaled H + lambda.
+  // The parameters that were free at the last factorisation, and the factor L of their scaled H +
+  // lambda.
   bool factored_ = false;
   std::vector<size_t> base_;
   std::vector<bool> in_base_;
   std::vector<double> units_, L_;
-  // Those that changed sides since, the former by number in base_.
+  // Parameters that became held and free since, the former by number in base_.
   std::vector<size_t> removed_, added_;
-  // What each that did asks of the factor, from when it first did: its column in solved_.
+  // Column of each parameter that has changed sides in solved_ (columns of U and V of SetStep),
+  // computed at its first change.
   std::vector<int> column_of_;
   std::vector<double> solved_;
 };

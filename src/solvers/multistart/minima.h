@@ -30,7 +30,7 @@ struct Minima {
   // and a further one is unlikely to end in a new one.
   bool Enough() const;
 
-  // "of 40 starts 3 ended in the lowest minimum; ..."
+  // Text such as "of 40 starts 3 ended in the lowest minimum; ...".
   std::string Describe() const;
 };
 

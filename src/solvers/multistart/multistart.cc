@@ -26,13 +26,13 @@
 namespace trilobe {
 namespace {
 
-// Where a step costs more by its parameters than by its samples, fewer do.
+// Thinning for anisotropic models, whose steps cost more by their parameters than by their samples.
 constexpr StartElimination::Thinning kThinnedMore{.samples_per_parameter = 6, .max_stride = 24};
 
 // The starts, in the order in which they enter: the given one first.
 class Starts {
  public:
-  // Those of `coarse`, the coarse samples, if there are any, are made at once.
+  // Coarse starts, by the samples `coarse` if there are any, are made at once.
   Starts(const Objective& objective, const std::optional<Objective>& coarse,
          const FactorModel& given, uint64_t seed, StartElimination* elimination, StopCheck stop)
       : objective_(objective),
@@ -43,7 +43,7 @@ class Starts {
     if (coarse) coarse_ = SoftenCoarseStarts(*coarse, objective.num_threads(), stop_, &phases_);
   }
 
-  // Of what was done before any start entered.
+  // Time spent before any start entered.
   const PhaseSeconds& phases() const { return phases_; }
 
   // Enters more of them, until there have been `count`.
@@ -52,7 +52,7 @@ class Starts {
   }
 
  private:
-  // In the order of what they have won for the time that they take (docs/solvers.md).
+  // Ordered by gain over time taken (docs/solvers.md).
   static constexpr std::array<std::string_view, 9> kByCoarse = {
       "given",  "coarse",   "highlight", "coarse", "coarse",
       "coarse", "analytic", "roughness", "swept"};
@@ -75,7 +75,7 @@ class Starts {
     const auto stiff = std::ranges::find(StiffStarts(), name, &StiffStart::name);
     if (name == "given") {
       elimination_->Enter("given", [this](PhaseSeconds*) { return given_; });
-      // If it agrees with one that does not depend on it, that goes on: the same whatever is given.
+      // If it agrees with a start that does not depend on it, that one goes on, whatever is given.
       if (!coarse_.empty()) elimination_->RankLastBehind(kSameE);
     } else if (stiff != StiffStarts().end()) {
       EnterStiff(*stiff);
@@ -115,7 +115,8 @@ class Starts {
                         {.count = 0});
   }
 
-  // As `awls` would go on from the given one: it creeps past minima that longer steps fall into.
+  // Sweeps on from the given model as `awls` would: it creeps past minima that longer steps fall
+  // into.
   void EnterSwept() {
     elimination_->Enter("swept", [this](PhaseSeconds*) { return given_; },
                         {.count = 60, .in_blocks = false});
@@ -184,7 +185,7 @@ std::vector<double> StepsOf(const std::vector<Round>& rounds) {
   return steps;
 }
 
-// By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
+// Relative excess of E on all samples over the estimate from the thinned ones that counts as large,
 // beyond what follows from a fit of p parameters to n values: (1 + p / n) / (1 - p / n).
 constexpr double kLargeMismatch = 0.03;
 
@@ -217,7 +218,7 @@ void RunRounds(const std::vector<Round>& rounds, const EnoughStarts& enough,
   if (!go_on) return;
   const auto stop = [run] { return run->IsToStop(); };
   FactorModel best = given;
-  // Where the stepper stands, if that is the best point so far.
+  // Records the stepper's model if that is the best so far, else the best again.
   const auto record = [&] {
     const bool better = stepper->E() < run->best_objective();
     if (better) best = stepper->current();
@@ -259,7 +260,7 @@ void RunRounds(const std::vector<Round>& rounds, const EnoughStarts& enough,
       const double mismatch = stepper->E() / elimination.Results().front().objective - 1;
       go_on = record();
       if (!go_on) break;
-      // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
+      // If few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
       const bool large = mismatch > kLargeMismatch + ExpectedMismatch(elimination.thinned());
       const bool go_on_from_here = round.tries < rounds.back().tries;
@@ -332,7 +333,7 @@ class Auto : public Solver {
 
 class Multistart : public Solver {
  private:
-  // So many starts at a time are led to their end. The first ones stop after few steps: on these
+  // Leads kTogether starts at a time to their end. The first ones stop after few steps: on these
   // samples they may be misled.
   static std::vector<Round> Rounds(int starts) {
     constexpr int kTogether = 8, kFewTries = 10, kTries = 100;

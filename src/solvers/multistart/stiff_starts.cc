@@ -18,8 +18,8 @@ constexpr StiffStart kWide{"wide", 0.2, 0.6, 10 * kStiffTables};
 constexpr StiffStart kNarrow{"narrow", 0.02, 0.2, kStiffTables};
 constexpr StiffStart kStiffStarts[] = {kWide, kNarrow, {"middle", 0.1, 0.6, kStiffTables}};
 
-// From the widest lobes to the narrowest, and two that have both. Which of them ends lowest on few
-// samples, coarse ones tell: docs/decisions/multistart.md.
+// Starts from the widest lobes to the narrowest, and two that have both. Coarse samples tell which
+// of them ends lowest on few samples: docs/decisions/multistart.md.
 constexpr StiffStart kCoarseStarts[] = {
     kWide, kNarrow, {"spread", 0.02, 0.6, kStiffTables}, {"broad", 0.05, 0.6, 10 * kStiffTables}};
 constexpr int kNumCoarseStarts = std::size(kCoarseStarts);

@@ -14,7 +14,7 @@
 namespace trilobe {
 namespace {
 
-// Where an entry stands, in units of the paper's 90 bins. Highlights are as wide in the root of
+// Position of an entry, in units of the paper's 90 bins. Highlights are equally wide in the root of
 // theta_h wherever they end.
 double Place(Factor factor, double theta) {
   const double t = theta / (kPi / 2);
@@ -27,8 +27,8 @@ constexpr double kMaxFall = 1.0 / 3;  // of the damping after one step
 constexpr double kMinGain = 1e-4;
 // No parameter changes by more than a factor of e^1.5 in one step.
 constexpr double kMaxMove = 1.5;
-// What is below this share of the largest of its kind is lifted as a zero is; and by what moves the
-// residuals by this share of their length at most.
+// Parameters below kFloor times the largest of their kind are lifted as zeros are; a lift moves the
+// residuals by at most kHarmless of their length.
 constexpr double kFloor = 1e-6, kHarmless = 1e-2;
 
 }  // namespace

@@ -254,9 +254,9 @@ FactorModel MomentsModel(const Objective& objective, uint64_t seed) {
   const ModelSpec& spec = objective.spec();
   const Axis& axis = spec.d_axis;
   const Table profile = HighlightProfile(objective);
-  // Of slopes (tan theta cos phi, tan theta sin phi), weighted by the area of facets. A GGX
-  // distribution has no second moments: where its tail is cut off at a slope of 1 they are near
-  // alpha^2 / 2 for the roughnesses of highlights that nodes resolve.
+  // Second moments of slopes (tan theta cos phi, tan theta sin phi), weighted by the area of
+  // facets. A GGX distribution has no second moments: with its tail cut off at a slope of 1 they
+  // are near alpha^2 / 2 for the roughnesses of highlights that nodes resolve.
   double total = 0, xx = 0, xy = 0, yy = 0;
   for (int k = 0; k < axis.size; ++k) {
     const double theta = axis.Theta(k), slope = std::tan(theta);
@@ -290,7 +290,7 @@ FactorModel MomentsModel(const Objective& objective, uint64_t seed) {
     for (int k = 0; k < axis.size; ++k) {
       const double theta = axis.Theta(k), phi = axis.Phi(k) - angle;
       const double cos2 = std::cos(theta) * std::cos(theta);
-      // Where phi is not known, the slope is the mean over it.
+      // If phi is not known, the slope is averaged over it.
       const double u2 = axis.polar()
                             ? std::pow(std::cos(phi) / a, 2) + std::pow(std::sin(phi) / b, 2)
                             : (1 / (a * a) + 1 / (b * b)) / 2;
@@ -342,7 +342,7 @@ FactorModel FreedModel(const Objective& objective, uint64_t seed) {
 // same everywhere.
 double Uniform(std::mt19937_64* engine) { return static_cast<double>((*engine)() >> 11) * 0x1p-53; }
 
-// Log-uniform roughnesses.
+// Model with log-uniform roughnesses.
 FactorModel RoughnessModel(const Objective& objective, std::mt19937_64* engine) {
   const ModelSpec& spec = objective.spec();
   std::vector<Table> D;
@@ -357,7 +357,7 @@ FactorModel RoughnessModel(const Objective& objective, uint64_t seed) {
   return RoughnessModel(objective, &engine);
 }
 
-// And every parameter times a log-uniform factor in [1/2, 2].
+// RoughnessModel, and every parameter times a log-uniform factor in [1/2, 2].
 FactorModel RandomModel(const Objective& objective, uint64_t seed) {
   std::mt19937_64 engine(seed);
   FactorModel model = RoughnessModel(objective, &engine);

@@ -13,14 +13,14 @@
 
 namespace trilobe {
 
-// Where the sums w v r and w v v' of AddNormalEquations lie in memory: those of one kind, or, of D,
-// of its tables that are read by one stretch. Each
-// entry of its tables (of amplitudes, each channel; their tables are s of each lobe, then d) has
-// lines of its own: its squared length, its gradient, and its products with amplitudes. Products
-// with entries of kinds before it are in blocks, one a pair of entries: those for one entry of the
-// other kind follow each other, as do the entries that a sample reads. So are products within G,
-// which a sample reads twice. Within D and F, which it reads once, only entries of one cell have
-// any; there they are by cell. A line is a vector over the kind's tables.
+// Memory layout of the sums w v r and w v v' of AddNormalEquations for one kind of parameters or,
+// for D, for its tables that are read by one stretch. Each entry of its tables has lines of its
+// own: its squared length, its gradient, and its products with amplitudes. (For amplitudes, entries
+// are channels, and tables are s of each lobe, then d.) Products with entries of kinds before it
+// are in blocks, one per pair of entries: those for one entry of the other kind follow each other,
+// as do the entries that a sample reads. The same holds within G, which a sample reads twice.
+// Within D and F, which it reads once, only entries of one cell have products, which are stored by
+// cell. A line is a vector over the kind's tables.
 struct AccumulatorRows {
   static constexpr int kSquaredLength = 0, kGradient = 1, kFirstAmplitude = 2;
 
@@ -31,11 +31,12 @@ struct AccumulatorRows {
   std::vector<int> lane;       // [tables]
   std::vector<int> parameter;  // [entries][tables]
   size_t own = 0;              // [entries][own_lines][lanes] begin here
-  // With each of the rows up to these: [their entries][entries][their tables][lanes]; with
-  // themselves by_cell [cells][Stencil::kMaxSize][Stencil::kMaxSize][tables][lanes].
+  // Offsets of the blocks with each of the rows up to these,
+  // [their entries][entries][their tables][lanes]; with themselves by_cell,
+  // [cells][Stencil::kMaxSize][Stencil::kMaxSize][tables][lanes].
   std::vector<size_t> blocks;
   size_t own_size() const { return static_cast<size_t>(own_lines) * lanes; }
-  // Where the blocks begin of the k-th entry of a cell with all entries of it.
+  // Offset, by_cell, of the blocks of a cell's k-th entry with all entries of the cell.
   size_t InCell(int cell, int k) const {
     return (static_cast<size_t>(cell) * Stencil::kMaxSize + k) * Stencil::kMaxSize * tables * lanes;
   }
@@ -68,11 +69,12 @@ class ScatterBuffer {
     if (size_ == kMost) Flush();
     ++size_;
   }
-  // The cell that it reads by lookup r, and its number; returns where the weights of its entries
-  // go.
+  // Sets the cell that the sample reads by lookup r, and its number; returns where to write the
+  // weights of its entries.
   double* Read(int r, int number, const Cell& cell);
-  // Where lines of an entry go that lookup r reads, from the gradient on, and products with an
-  // entry that lookup q <= r reads, [tables of q][lanes]: before any weight of an entry.
+  // Output for the lines of an entry that lookup r reads, from the gradient on, and for its
+  // products with an entry that lookup q <= r reads, [tables of q][lanes]: without the weights of
+  // entries.
   double* Lines(int r) {
     return &lookups_[r].lines[static_cast<size_t>(size_ - 1) * lookups_[r].lines_size];
   }

@@ -19,12 +19,12 @@ struct Columns {
     int lane, channel;
   };
   std::vector<Column> columns;
-  // Where a lobe's products with itself lie in those with a later lookup; -1 where another stretch
+  // Offset of a lobe's products with itself among those with a later lookup; -1 if another stretch
   // reads that lobe. [order.count()][kChannels][lobes]
   std::vector<int> of_lobe;
 };
 
-// What is the same for all samples.
+// Inputs and sums shared by all samples.
 struct SumJob {
   const BatchEvaluator* reader;
   const AccumulatorLayout* layout;
@@ -81,7 +81,7 @@ TRILOBE_ALWAYS_INLINE int LaneOf(const TableLanes& lanes, int m, int c) {
   return lanes.First(c) + (lanes.per_lobe ? m : 0);
 }
 
-// What multiplies in a lobe: s and the lookups of D, F, G_i and G_o, in their order.
+// Factors of a lobe: s and the lookups of D, F, G_i and G_o, in this order.
 enum Part { kS, kOfD, kOfF, kOfG_i, kOfG_o, kParts };
 TRILOBE_ALWAYS_INLINE int PartOf(const LookupOrder& order, int lookup) {
   return lookup < order.F() ? kOfD : kOfF + lookup - order.F();

@@ -24,7 +24,7 @@ void AddProducts(int size, const double* __restrict w, const double* __restrict 
   for (int n = 0; n < size; ++n) sum[n] += w[n] * x[n] * y[n];
 }
 
-// Of all samples.
+// Sum of w x y over all samples.
 template <typename Eight>
 TRILOBE_ALWAYS_INLINE double SumOfProductsBy(int size, const double* w, const double* x,
                                              const double* y) {

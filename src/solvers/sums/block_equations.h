@@ -40,14 +40,14 @@ class BlockEquations {
     int t, u;
     ModelSpec::ChannelRange channels;
   };
-  // An entry is the cell's k-th.
+  // A cell that contains an entry, as its k-th.
   struct Reader {
     int cell, k;
   };
 
   static int PairOf(int k, int l) { return k >= l ? k * (k + 1) / 2 + l : PairOf(l, k); }
   int tables() const { return last_ - first_; }
-  // What H has for a cell's k-th entry and its l-th: [pair_lanes_].
+  // Offset of the sums of H for a cell's k-th and l-th entries: [pair_lanes_].
   size_t InCell(int cell, int k, int l) const {
     return of_cells_ + (static_cast<size_t>(cell) * pairs_in_cell_ + PairOf(k, l)) * pair_lanes_;
   }

@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-// Up to kVector tables, side by side, and what `size` samples read from them.
+// At most kVector tables, side by side, and the values that `size` samples read from them.
 struct ReadJob {
   int size;
   const Cell* cells;
@@ -38,7 +38,7 @@ void ReadTables(const ReadJob& job) {
   }
 }
 
-// What a lobe has to do with samples of one channel.
+// Inputs and outputs of one lobe for samples of one channel.
 struct LobeJob {
   int size;
   double s;

@@ -48,10 +48,10 @@ class SampleLookups {
   // Evaluates samples [begin, end), at most kBatch.
   void Evaluate(int begin, int end, const FactorModel& model, Batch* batch) const;
 
-  // Of Evaluate, the slopes in a table of G alone, which do not depend on G.
+  // Computes only the slopes of Evaluate in a table of G, which do not depend on G.
   void SlopesInG(int table, int begin, int end, const FactorModel& model, Batch* batch) const;
 
-  // What all samples read of a table of G at the first and at the second direction. [samples]
+  // Reads a table of G for all samples, at the first and at the second direction. [samples]
   void ReadG(int table, std::vector<double>* G_i, std::vector<double>* G_o) const;
 
   const FoldedSamples& samples() const { return samples_; }
@@ -61,7 +61,7 @@ class SampleLookups {
   void ForChunks(const std::function<void(int, int)>& work) const;
 
  private:
-  // Up to kVector tables that are read by the same lookup (of G: lookups), side by side.
+  // At most kVector tables that are read by the same lookup (of G: lookups), side by side.
   struct Group {
     Factor factor;
     int first, last;

@@ -151,7 +151,7 @@ void ScatteredEquations::GatherOwn(const AccumulatorRows& rows, int entry,
   }
 }
 
-// Products of all pairs of entries, for these of the rows.
+// Gathers products of all pairs of entries, for these of the rows.
 void ScatteredEquations::GatherBlocks(const AccumulatorRows& rows, int first_entry, int last_entry,
                                       QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
@@ -191,7 +191,7 @@ void ScatteredEquations::GatherBlocks(const AccumulatorRows& rows, int first_ent
   }
 }
 
-// Those within a kind, cell by cell.
+// Gathers products within a kind, cell by cell.
 void ScatteredEquations::GatherCells(const AccumulatorRows& rows, QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
   const double* const blocks = accumulators_[0].data() + rows.blocks.back();

@@ -22,7 +22,7 @@ struct SampleRange {
 struct NodeJob {
   const double* A;
   double *b, *G_i, *G_o;
-  // Of the entries of cells of G, by either direction.
+  // Weights of the entries of cells of G, for either direction.
   std::array<const double*, Stencil::kMaxSize> weight_i, weight_o;
 
   SampleRange Of(const ShadowingUpdates::Readers& readers) const {
@@ -65,7 +65,7 @@ TRILOBE_ALWAYS_INLINE void AddLanes(const SampleRange& at, int n, const double* 
 // c1 .. c4 of the change of E (ElementQuartic).
 template <bool kBoth, typename Eight>
 TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
-  // Of one direction alone, G of the other one counts.
+  // If only one direction reads the node, G of the other one is a factor.
   const bool is_i = at.weight_i != nullptr;
   const double* const weight = is_i ? at.weight_i : at.weight_o;
   const double* const G = is_i ? at.G_o : at.G_i;

@@ -28,7 +28,7 @@ void CheckSize(size_t size, size_t wanted, const std::string& what) {
 
 }  // namespace
 
-// Those of the normal equations, by channel; the first unknown is d.
+// Sums of the normal equations, by channel; the first unknown is d.
 struct TexelSolver::Sums {
   std::array<std::array<std::array<double, kColumns>, kColumns>, kChannels> H{};
   std::array<std::array<double, kColumns>, kChannels> g{};

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// What one form (TermForms) makes of a measurement. E is relative to that of a black model.
+// Fit of one form (TermForms) to a measurement. E is relative to that of a black model.
 struct FormFit {
   std::string form;
   TermModel model;  // fitted to all samples that are used

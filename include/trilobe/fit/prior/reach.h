@@ -23,7 +23,7 @@ std::vector<SphericalAngles> DirectionsBetween(double max_theta, size_t count, S
 double LargestTheta(const BrdfSamples& samples);  // of theta_i and theta_o [rad]
 double LargestValue(const BrdfSamples& samples);  // of all channels [1/sr]
 
-// Which of 50,000 pairs of directions up to max_theta have a channel of the model above `value`.
+// Those of 50,000 pairs of directions up to max_theta where a channel of the model exceeds `value`.
 // The same for any number of threads.
 std::vector<SphericalAngles> DirectionsAbove(double value, double max_theta,
                                              const FactorModel& model, int num_threads);

@@ -34,11 +34,12 @@ struct BeyondData {
   double share = 0;  // unmeasured fraction of the bins above the surface
   // Largest rho cos theta, theta the steeper angle, outside and within the measured directions.
   double largest = 0, largest_within = 0;
-  // Of the whole sphere. Unmeasured bins have the authors' values or else the nearest valid ones.
+  // PSNR over the whole sphere. Unmeasured bins take the authors' values or else the nearest valid
+  // ones.
   double psnr_db = 0;
 };
 
-// How closely a material resembles its measurement.
+// Similarity of a material and its measurement.
 struct AppearanceReport {
   std::string environment;
   int lights = 0, size = 0;

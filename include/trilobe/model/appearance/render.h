@@ -48,7 +48,8 @@ struct Incident {
   double weight = 1;  // in the coverage
 };
 
-// From the normal of a point to a light and to the eye; .i is 0 where either is below the surface.
+// Cosines between the normal of a point and a light and the eye; .i is 0 if either is below the
+// surface.
 inline Cosines CosinesOver(const SurfacePoint& point, const Direction& light) {
   const Cosines cosines{std::min(Dot(point.normal, light), 1.0),
                         std::min(Dot(point.normal, kEye), 1.0)};

@@ -12,21 +12,21 @@ namespace trilobe {
 // The towards-eye direction of all views, in the world (environment.h).
 inline constexpr Direction kEye = {0, 0, 1};
 
-// What a pixel sees of an object: unit vectors at right angles to each other, `x` and `y` along
-// those of the material.
+// The point of an object that a pixel sees: orthonormal vectors, `x` and `y` along those of the
+// material.
 struct SurfacePoint {
   int pixel = 0;
   Direction x{}, y{}, normal{};
 };
 
-// An object as the eye sees it from afar: what is along the middles of the pixels.
+// An object seen from afar: the points of its surface at pixel centres.
 struct View {
   int width = 0, height = 0;  // pixels, row by row from the top
   std::vector<SurfacePoint> points;
 };
 
-// A sphere that touches the sides of a square, x along its parallels, to the right. Of its pixels
-// one in `every`, evenly spread.
+// A sphere that touches the sides of a square, x along its parallels, to the right. Contains one of
+// `every` pixels, evenly spread.
 View ViewSphere(int size, int every = 1);
 
 // A piece of cloth that leans back, in soft folds, and fills two squares, one above the other. The

@@ -12,7 +12,7 @@ namespace trilobe {
 
 class Readings;
 
-// What an instrument may do to a measurement (docs/robustness.md).
+// A kind of instrument error that a measurement may suffer (docs/robustness.md).
 struct CorruptionKind {
   std::string name;     // "noise"
   std::string unit;     // of the strength: "deg"

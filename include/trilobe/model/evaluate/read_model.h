@@ -22,7 +22,7 @@ struct ModelFile {
   // The stored parameters; all if there is no layout. The others are computed from them, also in
   // `model` (ExpandStored).
   std::optional<TableLayout> layout = std::nullopt;
-  // Of a spectral model, which is what is stored: `model` is its colour, SpectralModel::ToRgb.
+  // The stored model if that is spectral: `model` is its colour, SpectralModel::ToRgb.
   std::optional<SpectralModel> spectral = std::nullopt;
 };
 

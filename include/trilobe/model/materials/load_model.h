@@ -14,7 +14,7 @@ namespace trilobe {
 inline constexpr std::string_view kMaterialPrefix = "material:";
 bool IsMaterial(std::string_view path);
 
-// Their names, in alphabetical order.
+// Names of the materials, in alphabetical order.
 std::vector<std::string_view> MaterialNames();
 
 // The text of the model file that material:NAME stands for. Throws Error for a name that there is

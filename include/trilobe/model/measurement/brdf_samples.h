@@ -39,8 +39,8 @@ struct BrdfSamples {
   // [n], or empty: directions of scattered samples, with the order of wi and wo and the azimuths,
   // which `angles` lack and anisotropic models need.
   std::vector<SphericalAngles> directions = {};
-  // Of what was measured at several wavelengths, of which rho is the colour: the spectra, and which
-  // of them is a sample's [n]. Copies share the former. Else null.
+  // For a measurement at several wavelengths, whose colour is rho: the spectra, and the row of each
+  // sample in them [n]. Copies share the spectra. Otherwise null and empty.
   std::shared_ptr<const Spectra> spectra = nullptr;
   std::vector<int> spectrum_rows = {};
 

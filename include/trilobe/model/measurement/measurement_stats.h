@@ -21,7 +21,7 @@ struct BinCounts {
   int non_finite = 0;     // above it, a channel is NaN or infinite
   int negative = 0;       // above it and finite, a channel is below 0: lost
   int missing = 0;        // above it, without a value in the file
-  // None of these, but not measured, by reason (Unmeasured).
+  // Bins with none of these faults that were not measured, by reason (Unmeasured).
   int extrapolated = 0;
   int beyond_nodes = 0;
   int beyond_max_angle = 0;
@@ -29,7 +29,7 @@ struct BinCounts {
 };
 BinCounts CountBins(const BrdfTable& table);
 
-// "12 of 20 bins valid".
+// Text such as "12 of 20 bins valid", with `whole` for "bins".
 std::string ValidText(const BinCounts& counts, const std::string& whole);
 
 // Valid fraction of the bins above the surface, by cells of 1 x 1 degree of (theta_i, theta_o).

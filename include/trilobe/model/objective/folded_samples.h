@@ -84,8 +84,8 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples);
 using SampleMaker = std::function<WeightedSample(int)>;
 FoldedSamples Fold(int count, const SampleMaker& make, int num_threads);
 
-// The first of some samples as they are folded alone, by what all of them are folded to: those of a
-// measurement beside those of a prior. It has 4 bytes a sample where a fold has 160, and E of a
+// The first of some samples, folded alone, in terms of the fold of all: those of a measurement,
+// which samples of a prior follow. Takes 4 bytes per sample instead of the 160 of a fold; E of a
 // model has the same bits.
 struct FoldedPart {
   struct Value {
@@ -94,15 +94,15 @@ struct FoldedPart {
 
   std::shared_ptr<const FoldedSamples> whole;
   std::vector<int> number;  // in `whole`, ascending. [size]
-  // Of those that samples of the rest are folded into: their place in `number`, and what they are
-  // without these.
+  // Folded samples that contain others besides these: their positions in `number`, and their
+  // weights and values without the others.
   std::vector<std::pair<size_t, Value>> others;
   double constant = 0, measured_energy = 0;  // as FoldedSamples has them
 
   int size() const { return static_cast<int>(number.size()); }
 };
 
-// As Fold; sets all of *part, of samples 0 to `first`, but for `whole`.
+// Same as Fold; also sets all of *part, of samples 0 to `first`, but for `whole`.
 FoldedSamples FoldWithPart(int count, const SampleMaker& make, int num_threads, int first,
                            FoldedPart* part);
 

@@ -15,8 +15,8 @@ struct IterationRecord {
   double step = 0;        // |x - previous x| / |previous x|; 0 at the start
   // Scaled projected gradient (docs/solvers.md), if the solver computes it.
   std::optional<double> optimality = std::nullopt;
-  // What all threads of this process have had of the processors since it began [s]; less what other
-  // work on the machine took than `seconds` is. Unknown in traces of older programs.
+  // Processor time of all threads of this process since its start [s]; other work on the machine
+  // affects it less than `seconds`. Unknown in traces of older programs.
   std::optional<double> processor_seconds = std::nullopt;
   // With a prior: E of data and prior samples together, which the solver minimises.
   std::optional<double> objective_with_prior = std::nullopt;

@@ -57,7 +57,7 @@ class Objective {
   const BrdfSamples& samples() const;
   int num_samples() const;
   bool on_grid() const;
-  // Those that were added, or null.
+  // Samples that were added, or null.
   const BrdfSamples* added() const;
   const ModelSpec& spec() const { return spec_; }
   const Weighting& weighting() const;
@@ -83,7 +83,7 @@ class Objective {
   // One sample with its stencils. Throws Error if there is no such sample.
   WeightedSample Sample(int j) const;
 
-  // As the functions of these names with all samples, without a copy of these; numbers ascend.
+  // Same as the functions of these names on all samples, without copying these; numbers ascend.
   BrdfSamples Selected(std::vector<int> numbers) const;
   BrdfSamples Thinned(int stride) const;
   BrdfSamples EvenlySpread(int count) const;

@@ -36,7 +36,8 @@ class ParameterBlocks {
   std::span<double> block(int b) { return {values_.data() + Begin(b), Size(b)}; }
   std::span<const double> block(int b) const { return {values_.data() + Begin(b), Size(b)}; }
 
-  // Where each of them is in FactorModel::parameters(). Throws Error if there is no such block.
+  // Indices of the block's elements in FactorModel::parameters(). Throws Error if there is no such
+  // block.
   std::span<const int> parameters(int b) const { return {parameter_.data() + Begin(b), Size(b)}; }
 
   // The blocks by what they hold. There are s and rows only where the spec has lobes; row throws

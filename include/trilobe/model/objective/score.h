@@ -21,8 +21,8 @@ struct WorstSample {
   double error = 0;       // w (rho - rho*)^2, its part of E
 };
 
-// How well a model reproduces a measurement. Sums run over the valid samples and all channels; only
-// E and the selection of the worst samples use weights.
+// Quality of a model as a reproduction of a measurement. Sums run over the valid samples and all
+// channels; only E and the selection of the worst samples use weights.
 struct ScoreReport {
   int valid_samples = 0;
 

@@ -23,7 +23,7 @@ struct SplineCells {
 
   MerlGrid grid;
   std::vector<Cell> cells;
-  // As in FoldedGrid, sorted by cell. [size]
+  // Row of each sample, and the arrays of FoldedGrid, all sorted by cell. [size]
   std::vector<int> row;
   std::vector<double> t_i, t_o, inverse_cosines;
   std::array<std::vector<double>, kChannels> weight, rho;

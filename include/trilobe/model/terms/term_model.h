@@ -18,7 +18,7 @@
 // where s are the strengths of term t and each R is what the term reads of a table. Isotropic.
 namespace trilobe {
 
-// Where a table T is read, and what is made of it.
+// The angle at which a table T is read, and the formula that is applied to the value.
 enum class Site {
   kHalf,        // T(theta_h), by the stretch of the read
   kDifference,  // T(theta_d)
@@ -103,7 +103,7 @@ class TermModel {
   const TermSpec& spec() const { return spec_; }
   std::span<double> parameters() { return values_; }
   std::span<const double> parameters() const { return values_; }
-  // Those that a solver may move.
+  // Number of parameters that a solver may move.
   int num_parameters() const;
 
   std::span<double> strength(int term) {  // [channels]
@@ -137,7 +137,7 @@ class TermModel {
   std::vector<double> values_;
 };
 
-// How a pair of directions reads the tables of a spec. Reads of the same axis, site and stretch
+// Reads the tables of a spec for a pair of directions. Reads of the same axis, site and stretch
 // share their stencils.
 class TermReader {
  public:
@@ -155,7 +155,7 @@ class TermReader {
   At StencilsAt(const HalfDiffAngles& angles) const;
 
   int num_places() const { return static_cast<int>(lookups_.size()); }
-  // Which place a read of a term uses.
+  // Number of the place that a read of a term uses.
   int PlaceOf(int term, int read) const { return place_[term][read]; }
   double InverseCosines(const At& at, int term) const {
     const int pair = pair_[term];

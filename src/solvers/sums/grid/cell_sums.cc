@@ -255,7 +255,7 @@ void CellSums::UpdateBlocks(double E, int num_threads,
     if (tables == 0) continue;
     std::array<int, kMaxBasis> element_of{-1};
     for (int m = 0; m < lobes; ++m) element_of[1 + m] = sharing.per_lobe ? m : 0;
-    // What s and the other factor make of a move, [its entries][kChannels][padded_].
+    // Derivative of x by an entry: s times the other factor, [its entries][kChannels][padded_].
     const int others = is_D ? thetas_d : thetas_h;
     const size_t step = padded_, steps = kChannels * step;
     std::vector<double> v(others * steps);

@@ -35,7 +35,7 @@ JointRows::JointRows(const FoldedGrid& folded, const ModelSpec& spec)
 
 JointRows::~JointRows() = default;
 
-// What the sums of a row need.
+// Reads the inputs of the sums of a row.
 void JointRows::ReadRow(const FactorModel& model, const Pieces& G, int h, int d,
                         RowAccumulator* accumulator) const {
   const RowLayout& layout = *layout_;

@@ -74,7 +74,7 @@ template <int kTerms>
   }
 }
 
-// What is left of a moment when its theta_o side is contracted with the polynomials of four nodes.
+// Contracts the theta_o side of a moment with the polynomials of four nodes.
 template <int kTerms, typename Moments>
 [[gnu::always_inline]] inline OfNodes<kTerms> Contract(const Moments& moment,
                                                        const OfNodes<kTerms>& o) {
@@ -128,7 +128,7 @@ struct JointShadowing::Side {
   std::vector<Degree6> GG;     // [pair]
 };
 
-// What all cells have in common in one pass over them.
+// Data that all cells share in one pass over them.
 struct JointShadowing::Pass {
   const FactorModel& model;
   Hessian hessian;
@@ -152,13 +152,13 @@ struct JointShadowing::Accumulator {
     for (auto* sums : {&across, &along, &curvature}) std::ranges::fill(*sums, 0.0);
   }
 
-  // Of one cell.
+  // Sums of one cell.
   std::vector<SplineMoments> moments, residual_moments;  // [pair], [table]
-  // Of all cells. Nodes are those of one table, then of the other, numbered from -1.
+  // Sums of all cells. Nodes are those of one table, then of the other, numbered from -1.
   std::vector<double> across;     // [pair][padded_nodes][padded_nodes]; half of those with t = u
   std::vector<double> along;      // what multiplies B B. [pair][interval][kStride]
   std::vector<double> curvature;  // half. [table][padded_nodes][padded_nodes]
-  // Of one chunk of samples, in one channel; by the first lobe that a table serves there.
+  // Values of one chunk of samples, in one channel; by the first lobe that a table serves there.
   double y[kMaxLobes][kChunk], w_y[kMaxLobes][kChunk], residual[kChunk];
   std::vector<double> w_y_y, GG, w_r_y;  // [pair][kChunk], [table][kChunk]
 };
@@ -179,7 +179,7 @@ JointShadowing::JointShadowing(const SplineCells& samples, const ModelSpec& spec
   for (int m = spec.lobes - 1; m >= 0; --m) {
     for (int c = 0; c < kChannels; ++c) first_lobe_[spec.table(Factor::kG, m, c)][c] = m;
   }
-  // As many samples for each accumulator as in any other, in one piece.
+  // Each accumulator gets an equal number of samples, in one piece.
   first_cell_.assign(1, 0);
   const int count = NumAccumulators(static_cast<int>(samples.row.size()));
   for (int k = 0; k < count; ++k) {

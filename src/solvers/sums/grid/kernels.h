@@ -32,7 +32,7 @@ inline OfNodes<4> WeightsOfNodes(const CatmullRom& spline, int interval) {
   return transposed;
 }
 
-// --- What JointRows does with the samples of one row.
+// --- Kernels of JointRows, over the samples of one row.
 
 // Lines of values, one a sample, are padded to whole batches.
 inline constexpr int kBatch = 8;
@@ -77,7 +77,7 @@ void AddChannel(int size, double X, const double* w, const double* w_residual, i
 // to[sample][line] = from[line][sample], in tiles of four by four.
 void Transpose(int lines, int size, int line_size, const double* from, double* target);
 
-// Where the samples of a row lie on the spline, and  z = B H  on both sides.
+// Positions of the samples of a row on the spline, and  z = B H  on both sides.
 struct RowOfNodes {
   int size;
   const int16_t *interval_i, *interval_o;
@@ -90,7 +90,7 @@ struct RowOfNodes {
 void AddCrossSums(const RowOfNodes& row, int theta_h_lines, int theta_d_lines, const double* q,
                   double* theta_h_sums, double* theta_d_sums);
 
-// --- What CellSums does with many cells.
+// --- Kernels of CellSums, over many cells.
 
 // b of a cell and the rows of A are padded to whole vectors.
 constexpr int PaddedBasis(int basis) { return (basis + 3) / 4 * 4; }

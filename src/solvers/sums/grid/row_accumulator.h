@@ -12,10 +12,10 @@
 
 namespace trilobe {
 
-// What lies where in the sums of JointRows. The parameters "of theta_h" are those that all rows of
-// one theta_h share: d and s, numbered as in a model, then one of each table of D; those "of
-// theta_d" one of each table of F. Those that serve some channel in common with a table of G have a
-// line in its sums; one more line of theta_h has the gradient of G.
+// Layout of the sums of JointRows. The parameters "of theta_h" are those that all rows of one
+// theta_h share: d and s, numbered as in a model, then one of each table of D; those "of theta_d"
+// one of each table of F. Those that serve some channel in common with a table of G have a line in
+// its sums; one more line of theta_h has the gradient of G.
 class RowLayout {
  public:
   struct OfTable {
@@ -28,7 +28,7 @@ class RowLayout {
 
   RowLayout(const ModelSpec& of_model, int max_row);
 
-  // Their numbers.
+  // Numbers of the parameters.
   static int s(int m, int c) { return kChannels * (1 + m) + c; }
   int D(int m, int c) const { return first_D + spec.table(Factor::kD, m, c); }
   int F(int m, int c) const { return spec.table(Factor::kF, m, c); }
@@ -57,7 +57,7 @@ class AlignedSums {
   std::vector<CacheLine> lines_;
 };
 
-// What a share of the rows adds up to, and the row at hand.
+// Sums over a share of the rows, and the data of the current row.
 struct RowAccumulator {
   RowAccumulator(const RowLayout& layout, int theta_d);
 
@@ -70,18 +70,18 @@ struct RowAccumulator {
   }
 
   double objective = 0;
-  // Of all rows for d and s, of those of the present theta_h for D.
+  // Sums over all rows for d and s, over those of the present theta_h for D.
   std::vector<double> theta_h_H;         // [of theta_h][of theta_h], from the diagonal
   std::vector<double> theta_h_gradient;  // [of theta_h]
-  // AddRowSums of the rows of the present theta_h, with f the factors F; of those of each theta_d,
-  // with g the factors D.
+  // Sums of AddRowSums: over the rows of the present theta_h, with f the factors F; and over those
+  // of each theta_d, with g the factors D.
   std::vector<double> theta_h_sums;  // [kChannels][sums_size]
   std::vector<double> D_F;           // H of the present theta_h. [theta_d][of theta_h][of theta_d]
   std::vector<double> theta_d_sums;  // [theta_d][kChannels][sums_size]
   AlignedSums theta_h_G;             // by table: [padded_nodes][theta_h lines]
   AlignedSums theta_d_G;             // [theta_d], by table: [padded_nodes][theta_d lines]
 
-  // Of one row, padded to whole batches.
+  // Data of one row, padded to whole batches.
   int size = 0, padded_size = 0;
   const int16_t *interval_i = nullptr, *interval_o = nullptr;
   std::array<LobesOfRow, kChannels> lobes;
