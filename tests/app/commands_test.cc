@@ -375,8 +375,8 @@ TEST(ConvertTest, WritesStandardMaterials) {
   if (!kSanitized) {
     EXPECT_THAT(Contents(folder / "x.png"), testing::StartsWith("\x89PNG"));
   }
-  // Of a measurement, to a model of it. That of a mat material may be half a metal's, as nothing of
-  // it glitters; a plastic's is none.
+  // A measurement is fitted first. Plastic becomes a dielectric; for a matt material `Metallic` may
+  // be 0.5, since nothing of it glitters.
   const ProgramResult blender =
       RunProgram({"convert", "synth:plastic@20x20x40", "--out=" + (folder / "x.principled.json")});
   EXPECT_EQ(blender.status, 0) << blender.err;
@@ -445,7 +445,7 @@ TEST(ConvertTest, WritesFilesOfOpticalDesign) {
               "--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf");
 }
 
-// What info prints of scattered samples, and convert makes of them, is the same for each format.
+// `info` and `convert` treat scattered samples alike in every format.
 const char kCsv[] =
     "theta_i,phi_i,theta_o,phi_o,r,g,b\n# a comment\n"
     "10,0,70,0,1,2,3\n70,0,10,0,1,2,3.3\n10,0,20,0,4,5,6\n10,0,20,0,-1,5,6\n";

@@ -1,4 +1,4 @@
-// What the system refuses the program, memory, size of files, cores, is told in a line.
+// System limits on memory, file size and cores are reported in one line.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

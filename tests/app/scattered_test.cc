@@ -1,4 +1,4 @@
-// What `trilobe fit` stores of scattered samples: the model that was solved, on its own few nodes.
+// `trilobe fit` stores the model that was solved for scattered samples, on its own few nodes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST_F(Scattered, StoresTheModelThatWasSolved) {
   const json score = json::parse(RunProgram({"score", path, folder_ / "few.csv", "--json"}).out);
   EXPECT_NEAR(score["objective"], solved, 1e-9 * solved);
 
-  // What evaluates models takes its few nodes.
+  // Evaluators take its few nodes.
   const PreparedModel<double> prepared(file.model);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> theta(0, 1.5), phi(0, 6);

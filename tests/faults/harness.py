@@ -113,7 +113,7 @@ class Command:
         return (next(iter(runs)) if runs else None), sealed
 
     def check(self, before, dropped):
-        """What is left after a fault: of one run in each folder. Returns the runs by folder."""
+        """Checks that after a fault each folder holds files of one run. Returns the runs by folder."""
         runs = {}
         now = snapshot(self.out) if os.path.isdir(self.out) else {}
         for folder in self.folders:

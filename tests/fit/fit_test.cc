@@ -122,8 +122,8 @@ TEST(Fit, IsAsSmoothAsAsked) {
   EXPECT_EQ(step.objective_after, smooth.score.objective);
 }
 
-// What a report says of a solver is that solver's: E where it ended, which the trace ends with, and
-// a model that nothing else has changed.
+// A raw fit reports the solver's own results: the E of its trace, and a model that nothing else has
+// changed.
 TEST(Fit, RawIsWhatTheSolverFound) {
   // With an edge of the data, which joint steps would tie.
   const Measurement measured =

@@ -14,7 +14,7 @@ import numpy as np
 Array = np.ndarray
 PROGRAM = ""
 BINS = (90, 90, 180)
-SCALES = np.array([1.0, 1.15, 1.66]) / 1500  # of a MERL file, red, green, blue
+SCALES = np.array([1.0, 1.15, 1.66]) / 1500  # scales of a MERL file: red, green, blue
 
 
 def spline(values: Array, theta: Array) -> Array:

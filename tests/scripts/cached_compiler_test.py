@@ -69,7 +69,7 @@ class CachedCompiler(unittest.TestCase):
             self.skipTest(f"no {compiler}")
         self.assertEqual(self.built(self.checkout("a"), compiler), 0)
         self.assertEqual(self.built(self.checkout("b"), compiler), 2)
-        # What is precompiled counts, macros included.
+        # Precompiled headers count, macros included.
         other = {"one.h": "#define ONE 2\n"}
         self.assertEqual(self.built(self.checkout("c", other), compiler), 0)
 

@@ -13,7 +13,7 @@
 #include "trilobe/solvers/start/initial_model.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
-// Of the page.
+// Defined in the program of the page.
 trilobe::FactorModel FitSmoothF(const trilobe::Objective& objective, double weight,
                                 trilobe::FactorModel* model);
 

@@ -180,7 +180,7 @@ def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Pa
     saved = tmp_path / "saved.json"
     download.value.save_as(saved)
     assert "822 parameters" in run("info", saved)
-    # What is saved is what was seen.
+    # The saved model looks as the page showed it.
     page.set_input_files("#file", saved)
     wait_for(page, "document.querySelector('#message').textContent.startsWith('Opened')")
     finished(page)

@@ -201,7 +201,7 @@ TEST(WriteFile, LeavesEverythingAsItWasOnAFullDisk) {
       testing::ExitedWithCode(0), "");
 }
 
-// What a run leaves that was killed while it wrote: nobody holds the lock of its temporary file.
+// A run that was killed while it wrote leaves a temporary file, whose lock nobody holds.
 TEST(WriteFile, IsNotInTheWayOfWhatAKilledRunLeft) {
   const TestDirectory directory;
   const std::string path = directory.Path("file");

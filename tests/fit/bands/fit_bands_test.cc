@@ -171,7 +171,7 @@ TEST(FitBands, HaveTheCanonicalScale) {
   for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(light.lobes[0][c] / (4 * three.s(0)[c]), 1, 1e-9);
   const std::span<const double> F = fit.model.F(0, 2);
   for (int k = 60; k < 90; ++k) {
-    EXPECT_NEAR(F[k] / F[59], (1 + 0.02 * k) / (1 + 0.02 * 59), 1e-9);  // as Start's
+    EXPECT_NEAR(F[k] / F[59], (1 + 0.02 * k) / (1 + 0.02 * 59), 1e-9);  // Start's ratio
   }
 }
 

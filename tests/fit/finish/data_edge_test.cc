@@ -143,7 +143,7 @@ TEST(DataEdge, TiesWhatFewSamplesRead) {
   }
 }
 
-// What this is for: nodes at the edge trade huge values, which the data hardly see.
+// The case that the step is for: nodes at the edge trade huge values, which the data hardly see.
 TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
   const BrdfTable measured = Measured(2, 75);
   const Objective objective = MakeObjective(measured, ModelSpec::SharedFactors(2, kGrid));
@@ -237,7 +237,7 @@ TEST(DataEdge, WhatWouldBeDearStaysToTheBit) {
   }
 }
 
-// Where D and F are dear, G alone.
+// G alone is tied where tying D and F would cost too much E.
 TEST(DataEdge, TiesShadowingAloneWhereTheOthersAreDear) {
   // D and F are rough, G is flat at the edge, and E small but not zero.
   FactorModel truth = RandomModel(ModelSpec::SharedFactors(1, kGrid), 1, 2);

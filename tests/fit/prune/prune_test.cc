@@ -118,7 +118,7 @@ TEST(Prune, ThreeDistinctLobesStayThree) {
   ExpectConsistent(fit, pruned);
 }
 
-// What is stored of a model that comes thinned is all that its pruning knows.
+// Pruning goes on from the stored entries of a model that is thinned already.
 TEST(Prune, GoesOnFromWhatIsStored) {
   const Fit fit = MakeFit(Material(2, false));
   const PrunedModel once = Prune(fit.objective, fit.model, {.max_relative_rise = 0.01});
@@ -128,7 +128,7 @@ TEST(Prune, GoesOnFromWhatIsStored) {
   const PrunedModel same = Prune(objective, once.model, options);
   EXPECT_EQ(same.num_parameters, once.num_parameters);
   EXPECT_NEAR(same.E, once.E, 1e-12 * once.E);
-  // As a model with fewer lobes, too: each of its tables of D has nodes of one or two of these.
+  // Also with fewer lobes: each table of D then has nodes of one or two earlier ones.
   options.max_relative_rise = 1e6;
   options.colour = options.shadowing = false;
   const PrunedModel further = Prune(objective, once.model, options);

@@ -68,7 +68,7 @@ TEST(CornellFile, ReadsPublishedMeasurements) {
   struct Expected {
     const char* name;
     int out_of_gamut;
-    Rgb mean;  // of the channels, before clipping them at 0, by numpy
+    Rgb mean;  // mean of the channels before clipping at 0, by numpy
   };
   for (const Expected& expected : {Expected{"garnet_red", 101, {0.101737, 0.062740, 0.063837}},
                                    Expected{"krylon_blue", 1063, {0.058535, 0.077665, 0.153173}},

@@ -1,4 +1,4 @@
-// What a file is told by, and who names it.
+// Formats are recognised by content and size, and readers name a file that is not theirs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -51,7 +51,7 @@ TEST(RecogniseFormat, GoesByTheFirstLinesOfAText) {
   EXPECT_EQ(FormatOf("# by me\nSource \tMeasured\r\nSymmetry\tAsymmetrical\n"), "zemax");
   EXPECT_EQ(FormatOf("Source\tSimulated\n"), "");
   EXPECT_EQ(FormatOf("Source Measured\nSymmetry Asymmetric\n"), "lighttools");
-  // What is wrong further on is for the reader to say.
+  // Errors further on are left to the reader.
   EXPECT_EQ(FormatOf(csv + std::string("1,\0,2\n", 6)), "csv");
   EXPECT_EQ(FormatOf(std::string("31\n400 410\n\0", 12)), "cornell");
 }

@@ -240,7 +240,7 @@ TEST(TextTable, BandsPicksWavelengths) {
   EXPECT_EQ(one.samples.spectra->wavelengths, (std::vector<double>{550}));
   EXPECT_THAT(one.notes,
               ElementsAre(HasSubstr("one value for all channels, 550 nm of 7 wavelengths")));
-  // As if there were no others: what is invalid at 400 nm does not count.
+  // Bands that are not asked for do not count: the invalid value at 400 nm is ignored.
   const std::vector<double> five = {450, 500, 550, 600, 650};
   const Measurement some = read("450,500,550,600,650");
   EXPECT_EQ(some.samples.rho[0], SpectralColor(five, "x")(std::vector<double>{.2, .3, .4, .5, .6}));

@@ -218,7 +218,7 @@ TEST(CompareAppearance, KnowsTheAlbedoOfALambertianMaterial) {
   EXPECT_NEAR(report.between_centers.relative, 0.25 / kPi / (0.5 / kPi + 1e-3), 1e-12);
 }
 
-// What samples at bin centres cannot tell: a ripple that vanishes there.
+// A ripple that vanishes at bin centres shows between them only.
 TEST(CompareAppearance, LooksBetweenTheCentres) {
   const BrdfTable table = Plastic();
   const TabulatedBrdf brdf(table);
@@ -237,7 +237,7 @@ TEST(CompareAppearance, LooksBetweenTheCentres) {
   EXPECT_LT(report.sphere.psnr_db, 40);
 }
 
-// As a renderer would: no light is taken away.
+// Renderers clamp negative values, too: no light is taken away.
 TEST(CompareAppearance, ANegativeValueIsBlack) {
   const BrdfTable table = Constant(0.1);
   EXPECT_EQ(Numbers(CompareAppearance(table, Grey(-5), Quick())),

@@ -97,7 +97,7 @@ BrdfSamples Scattered(const std::vector<double>& thetas_deg, const std::vector<R
   return samples;
 }
 
-// Of 0.35 / cos 0 each the exposure is 1, whatever the unit of the values.
+// With 0.35 / cos theta_h each, the exposure is 1, whatever the unit of the values.
 TEST(CompareSamples, SeesEachAsAPatchUnderItsOwnLight) {
   for (const double unit : {1.0, 1e-6, 1e6}) {
     const BrdfSamples samples = Scattered(

@@ -201,7 +201,7 @@ TEST(SphereTest, WithoutMaterialsOrLightsThereIsNothingToSee) {
   EXPECT_TRUE(std::ranges::all_of(image.radiance, [](const Rgb& x) { return x == Rgb{}; }));
 }
 
-// Of the pixels one in four, in all parts of the sphere, as it is among all of them.
+// One pixel in four is rendered, in all parts of the sphere, with the value it has among all.
 TEST(SphereTest, FewerPixelsAreSomeOfAll) {
   const BrdfTable table = RandomTable(kGrid, 4);
   const TabulatedBrdf brdf(table);

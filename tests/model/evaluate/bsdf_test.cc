@@ -117,7 +117,7 @@ TEST(BsdfSampling, WeightsOfBundledMaterialsAreBounded) {
   }
 }
 
-// As fits of measured materials may be: G differs from one entry to the next by five times.
+// Fits of measured materials may have such a G: neighbouring entries differ by a factor of five.
 TEST(BsdfSampling, AlbedoFollowsEachEntryOfG) {
   FactorModel model = AnalyticModel(ModelSpec::SharedFactors(2), 0.2, 0.05);
   for (int t = 0; t < model.spec().num_tables(Factor::kG); ++t) {

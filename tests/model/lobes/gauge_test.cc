@@ -64,8 +64,8 @@ double MeanLog(std::span<const double> table) {
   return sum / positive;
 }
 
-// What hangs together: of lobes and channels, in the order of s, those that share tables of F or
-// of G have the same number.
+// Connected components: lobes and channels, in the order of s, that share tables of F or of G have
+// the same number.
 std::vector<int> Groups(const ModelSpec& spec) {
   std::vector<int> group(kChannels * spec.lobes);
   std::iota(group.begin(), group.end(), 0);
@@ -278,7 +278,7 @@ TEST(Gauge, SIsTheAlbedoHoweverFarFAndGTrade) {
   }
 }
 
-// Of a thinned model, tables stay what they are beyond the data.
+// Thinned models are scaled only: their tables keep their shape beyond the data.
 TEST(Gauge, TheScaleAloneLeavesUnobservedEntriesInProportion) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(TableWithGaps(), spec);

@@ -239,7 +239,7 @@ TEST(Outliers, TheirLightIsWhatTheyAreOffBy) {
 TEST(Outliers, FewAndDarkOnesStay) {
   const Measurement smooth = LoadMeasurement("synth:plastic@40x40x40");
   const BrdfSamples samples = SamplesOf(smooth);
-  // Of the brightest samples, and of those that reflect the least light.
+  // Sample indices by reflected light, ascending.
   std::vector<int> by_light(samples.size());
   std::iota(by_light.begin(), by_light.end(), 0);
   std::ranges::stable_sort(by_light, std::less(), [&](int j) {

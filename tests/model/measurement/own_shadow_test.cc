@@ -53,7 +53,7 @@ TEST(OwnShadow, EndsWhereTheHighlightComesBack) {
 TEST(OwnShadow, IsNotWhatMaterialsDo) {
   EXPECT_EQ(FindOwnShadow(Highlight(0, 1)).theta_d_deg, 0);
   EXPECT_EQ(FindOwnShadow(Highlight(12, 3.5)).theta_d_deg, 0);  // not dark enough
-  EXPECT_EQ(FindOwnShadow(Highlight(3, 25)).theta_d_deg, 5);    // as far as one is looked for
+  EXPECT_EQ(FindOwnShadow(Highlight(3, 25)).theta_d_deg, 5);    // the largest that is looked for
   EXPECT_EQ(FindOwnShadow(Highlight(2, 25)).theta_d_deg, 0);    // not the half of it
   EXPECT_EQ(FindOwnShadow({}).theta_d_deg, 0);
   BrdfSamples few = Highlight(12, 25);

@@ -88,7 +88,7 @@ TEST(SampleSymptoms, AHighlightTowardsTheLightIsTold) {
 TEST(SampleSymptoms, MoreLightThanFellIsTold) {
   for (const ReflectedAtLeast& one :
        ReflectedLightOf(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.2; }).samples)) {
-    // As far as 80 degrees, and half a step of 5.
+    // The samples reach 80 degrees, plus half a step of 5.
     EXPECT_GT(one.albedo, 0.2 * kPi * 0.95);
     EXPECT_LT(one.albedo, 0.2 * kPi * 1.001);
   }

@@ -39,8 +39,8 @@ TEST(FoldedSamples, FoldsExchangedDirectionsAndDuplicates) {
               1e-12 * folded.MeasuredEnergy());
 }
 
-// What differs by more than rounding stays apart, and E is the sum over all samples for any weights
-// and values, 0 among them.
+// Samples that differ by more than rounding stay apart, and E is the sum over all samples for any
+// weights and values, 0 among them.
 TEST(FoldedSamples, KeepsWhatReadsOtherwiseApart) {
   BrdfSamples samples = Scattered(ValidSamples(RandomTable(kGrid, 3, 0)));
   const int size = samples.size();

@@ -24,13 +24,13 @@ const std::vector<double> kCosines = {1, 0.999, 0.5, 0.1, 0.01, 1e-6, 1e-17};
 constexpr double kCosO = 0.7;
 constexpr long double kSolidAngle = 3;
 
-// Of the channel that is asked for, of all three, and of cos theta_i.
+// Weight as a function of rho in its channel, rho in all three, and cos theta_i.
 using Exact = long double;
 using Formula = Exact (*)(Exact rho, const std::array<Exact, 3>& all, Exact cos_i);
 
 // The table of docs/objective.md, as it stands there.
 const std::map<std::string, Formula> kFormulas = {
-    {"appearance",  // where no measurement is known, whose level then counts as 1
+    {"appearance",  // level 1, since no measurement is known
      [](Exact, const std::array<Exact, 3>& all, Exact cos_i) {
        const Exact c = cos_i * kCosO;
        const Exact root = std::sqrt(c * (all[0] + all[1] + all[2]) / 3 + 0.05L);
@@ -93,7 +93,7 @@ std::string ErrorOf(const std::string& name) {
   return "";
 }
 
-// Of each weighting, at samples of all kinds: visit(weighting, rho, cos_i, weights).
+// Calls visit(weighting, rho, cos_i, weights) for each weighting, at samples of all kinds.
 template <typename Visit>
 void ForEachWeight(const Visit& visit) {
   const size_t n = kValues.size();

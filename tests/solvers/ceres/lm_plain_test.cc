@@ -130,7 +130,7 @@ TEST(LmPlain, ComesToTheSameEByAnyLinearSolver) {
   }
 }
 
-// Where samples lie between rows of D, only some of these can be eliminated.
+// For samples between rows of D, only some of these can be eliminated.
 TEST(LmPlain, EliminatesBetweenBins) {
   const Objective objective = BetweenBins(ModelSpec::SharedFactors(2, kGrid));
   const FactorModel start = RandomModel(objective.spec(), 2);
