@@ -67,7 +67,7 @@ export class LineChart {
     return element('div', {className: 'chart-tools'}, ...tools);
   }
 
-  // ---- What is seen ----
+  // ---- Drawing ----
 
   // series: [{label, color, points: [[x, y]...], unknown: a set of indices that no data told, width, dash, dots, key: in the
   // legend, if not the label; null for none}];

@@ -11,7 +11,7 @@ export function isEdited(edit, model) {
   return JSON.stringify(edit) !== JSON.stringify(noEdit(model));
 }
 
-// Of the form above, whatever a link says.
+// Returns an edit of the form above, whatever a link says: values are clamped to their ranges, invalid ones replaced.
 export function checkedEdit(edit, model) {
   const clean = noEdit(model);
   const between = (x, low, high, other) => (Number.isFinite(x) ? Math.min(Math.max(x, low), high) : other);

@@ -1,6 +1,6 @@
-// What the eye (+z, far away) sees of a surface: the sum over a part of the half vectors of its normal, each
-// with the light that mirrors would send it from there (src/model/appearance/render_environment.cc), or the
-// light of one lamp (LAMP 1). `material` is the BRDF, and 1 where its directions were measured.
+// Light that the eye (+z, far away) sees of a surface: the sum over a part of the half vectors of its normal, each with
+// the light that mirrors would send it from there (src/model/appearance/render_environment.cc), or the light of one
+// lamp (LAMP 1). `material` is the BRDF, and 1 where its directions were measured.
 uniform highp sampler2D normals, tangents, previous, cells;
 uniform highp sampler2D mirrored;
 uniform int from, to;

@@ -84,7 +84,7 @@ export function drawHeat(canvas, map, mark, dark) {
   }
 }
 
-// What the colours of a map stand for, with these percents.
+// Draws the scale of a map's colours, with these percents.
 export function drawScale(canvas, percents, dark) {
   const made = prepare(canvas);
   if (!made) return;
@@ -134,7 +134,7 @@ function drawPoints(context, points, place, style, dark) {
   }
 }
 
-// What goes where, in the plane of incidence: [{values: [[theta_o, value]...], color, dots}], theta_o from -90 to 90 [deg],
+// Draws light in the plane of incidence: [{values: [[theta_o, value]...], color, dots}], theta_o from -90 to 90 [deg],
 // light from the left. Radii are cube roots. Hatched where `known` of theta_o is false.
 export function drawPolar(canvas, curves, thetaI, known) {
   const made = prepare(canvas);

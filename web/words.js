@@ -1,4 +1,4 @@
-// What words mean: a "?" beside each.
+// Explanations of words: a "?" beside each.
 
 import {element} from './dom.js';
 

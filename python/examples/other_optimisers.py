@@ -163,7 +163,7 @@ def compare(measurement, names, seconds):
         f = Recorder(objective, seconds)
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of logarithms that run away
+                warnings.simplefilter("ignore")  # logarithms may run away
                 OTHERS[name](f, start)
         except OutOfTime:
             pass

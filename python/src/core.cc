@@ -166,7 +166,7 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
   });
 }
 
-// Of a spectral model: rows of a value for each wavelength.
+// Evaluates a spectral model: each row of `out` has a value for each wavelength.
 void Spectrum(const Material& material, const Input<double>& wi, const Input<double>& wo,
               const Output<double>& out) {
   if (!material.file().spectral) throw Error("the model has no wavelengths; eval gives its colour");
@@ -356,7 +356,7 @@ void BindEvaluation(nb::class_<Material>* material) {
 }  // namespace
 
 NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param): nanobind's
-  nb::set_leak_warnings(false);  // of objects that live when the interpreter ends
+  nb::set_leak_warnings(false);  // objects may live when the interpreter ends
   nb::exception<Error>(m, "Error", PyExc_ValueError).doc() =
       "Bad input or an impossible request. Its text is one line: what is wrong, where, what to do.";
   nb::class_<Material> material(m, "Material", "A model file, prepared for evaluation.");

@@ -77,7 +77,7 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
 
 NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
   nb::set_leak_warnings(false);
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres Solver would log is in the reports
+  FLAGS_minloglevel = google::GLOG_FATAL;  // the reports have what Ceres Solver would log
   gflags::SetVersionString(TRILOBE_VERSION);
   nb::register_exception_translator(
       [](const std::exception_ptr& exception, void* /*payload*/) {

@@ -27,7 +27,7 @@ CHANNELS = ("red", "green", "blue")
 _OTHER_FORMATS = (
     ".binary", ".bin", ".csv", ".bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".glsl", ".hlsl",
 )
-_ALBEDO_ERROR = 0.03  # of Brdf.albedo, up to 85 degrees
+_ALBEDO_ERROR = 0.03  # error of Brdf.albedo, up to 85 degrees
 _POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
 _AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
 
@@ -127,7 +127,7 @@ class Brdf:
                 stacklevel=3,
             )
 
-    # What it evaluates.
+    # Evaluation.
 
     def eval(self, wi: Any, wo: Any, *, components: bool = False) -> Floats:
         """The BRDF f [1/sr], without a cosine.
@@ -229,7 +229,7 @@ class Brdf:
         wi = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
         return self.albedo(wi)
 
-    # What it is made of.
+    # Form and parameters.
 
     @property
     def lobes(self) -> int:
@@ -349,7 +349,7 @@ class Brdf:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        """What it is, in short."""
+        """A short description."""
         kind = "anisotropic" if self.anisotropic else "isotropic"
         return f"<trilobe.Brdf: {kind}, {self.lobes} lobes>"
 
@@ -384,7 +384,7 @@ def load(path: str | os.PathLike[str]) -> Brdf:
 
 
 def materials() -> list[str]:
-    """What "material:NAME" may name: fitted models that come with the package (materials/README.md)."""
+    """Names for "material:NAME": fitted models that come with the package (materials/README.md)."""
     return list(_core.material_names())
 
 
@@ -455,7 +455,7 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
         reason = getattr(error, "strerror", None) or str(error)
-        if os.path.isdir(name):  # of which "." is busy
+        if os.path.isdir(name):  # "." is reported as busy
             reason = "it is a folder; give the name of a file"
         raise Error(f"cannot write {printable(name)}: {reason}") from None
 
@@ -553,7 +553,7 @@ def _axis_of(
             "per_lobe": name != "F",
             "per_channel": name == "F",
         }
-    if lobes == 0:  # of whose tables a file has none
+    if lobes == 0:  # a file has no tables then
         return np.empty(0), axis
     shape: tuple[int, ...] = (lobes,) if axis["per_lobe"] else ()
     if axis["per_channel"]:

@@ -99,7 +99,7 @@ def fit_texels(
 
 
 class _Fit:
-    """What is to be fitted."""
+    """A fit of texels that is to be made: its problem, values, materials and options."""
 
     def __init__(
         self, problem: Problem, source: Source, shared: int | list[Brdf], options: dict[str, Any], progress: bool
@@ -151,7 +151,7 @@ class _Fit:
         return About(self._source.shape, count, self._problem.options["coloured"], of)
 
     def _hash(self) -> str:
-        """Of all that results depend on; of the values a few."""
+        """Hash of all that results depend on; of the values a few."""
         import hashlib
 
         shared, problem = self._shared, self._problem
@@ -193,7 +193,7 @@ class _Fit:
         return np.stack([self._problem.lobes(material) for material in materials])
 
     def _tile(self, rows: tuple[int, int], lobes: Vector) -> Tile:
-        """Of each texel d, error and strengths."""
+        """d, error and strengths of each texel, side by side."""
         solved = self._problem.solve(lobes, self._source.read(*rows))
         s = solved.s if self._problem.options["coloured"] else solved.s[..., :1]
         strengths = [s[:, k] for k in range(s.shape[1])]

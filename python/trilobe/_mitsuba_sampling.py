@@ -10,7 +10,7 @@ from trilobe._brdf import Brdf
 from trilobe._mitsuba_tables import turns
 from trilobe._renderer import dr, mi
 
-# Of the half vectors, so much is drawn by the cosine, lest something between the nodes be missed.
+# Share of half vectors drawn by the cosine, lest something between the nodes be missed.
 _COSINE_SHARE = 0.01
 
 
@@ -83,7 +83,7 @@ class Sampling:
         self._theta_i = Nodes(table["theta_i"], table["theta_i"] * (2 / np.pi))
 
     def incident(self, wi: Any) -> Any:
-        """What is drawn for wi.
+        """The distribution to draw from for wi.
 
         Nodes with weights and integrals, the sum of these, the largest y, sin theta_i, and how often the cosine is.
         """

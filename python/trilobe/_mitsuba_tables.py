@@ -14,7 +14,7 @@ class Columns:
     """Tables side by side, four an array, so that those that are read together are one load."""
 
     def __init__(self, count: int, size: int, extra: Any = None) -> None:
-        """Of so many tables of so many entries; `extra` is one more, that never changes."""
+        """Makes `count` tables of `size` entries; `extra` is one more, that never changes."""
         self.count = count
         self._size = size
         self._indices: list[Any] = []

@@ -21,7 +21,7 @@ Callback = Callable[[Record, Brdf], Any]
 
 
 class Stop(Protocol):
-    """What another thread sets to end a fit, as threading.Event is."""
+    """A flag such as threading.Event, which another thread sets to end a fit."""
 
     def is_set(self) -> bool:
         """Whether the fit is to end."""
@@ -41,7 +41,7 @@ def run(
     module = fits()
     running = module.RunningFit()
     ended: dict[str, Any] = {}
-    done = threading.Event()  # as join() forgets the thread when Ctrl-C ends it
+    done = threading.Event()  # join() forgets the thread when Ctrl-C ends it
     asked: queue.Queue[tuple[Any, bytes]] = queue.Queue()
     answers: queue.Queue[bool] = queue.Queue()
     left = threading.Event()

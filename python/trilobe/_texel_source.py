@@ -69,7 +69,7 @@ def _spread(size: int, count: int) -> NDArray[np.int64]:
 
 
 def _shape_of(array: Any) -> tuple[int, ...]:
-    """() where it is none."""
+    """The shape of an array; () if it is none."""
     try:
         return tuple(int(length) for length in array.shape)
     except (TypeError, ValueError):

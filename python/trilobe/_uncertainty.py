@@ -14,8 +14,8 @@ from trilobe._objective import Objective
 from trilobe._result import Problem
 from trilobe._table import Table
 
-_MOST = 4000  # parameters, of which matrices are stored
-_RESOLVED = 1e-12  # of the largest eigenvalue, below which data say nothing
+_MOST = 4000  # most parameters, as matrices of them are stored
+_RESOLVED = 1e-12  # share of the largest eigenvalue, below which data say nothing
 
 Vector = NDArray[np.float64]
 
@@ -100,7 +100,7 @@ class _Steps:
 def uncertainty(
     problem: Problem, model: Brdf, method: Any, replicates: Any, blocks: Any, seed: Any
 ) -> Uncertainty:
-    """What `Result.uncertainty` returns."""
+    """Computes `Result.uncertainty`."""
     if not isinstance(method, str) or method not in ("covariance", "bootstrap"):
         raise Error(f"unknown method {' '.join(repr(method).split())[:60]}; known: covariance, bootstrap")
     for name, value, least in (("replicates", replicates, 2), ("blocks", blocks, 1), ("seed", seed, 0)):

@@ -198,7 +198,7 @@ class _Reader:
             self._tables[name] = tables[name].reshape(tables[name].shape[0], -1, max(size, 1))
 
     def value(self, wi: Tensor, wo: Tensor) -> Tensor:
-        """Of directions (texels, n, 3) above the surface: (texels, n, 3)."""
+        """rho (texels, n, 3) of directions (texels, n, 3) above the surface."""
         texels, n = wi.shape[:2]
         rho = self._d[:, None, :].expand(texels, n, 3)
         lobes = self._brdf.lobes

@@ -11,7 +11,7 @@
 // the geometry's tangents, or its first coordinates uv. WebGLRenderer only; made for three.js 0.168.
 import * as THREE from 'three';
 
-// What stands in for three's own model, after it has been declared. Directions of the model have z along the normal.
+// Replaces three's own lighting, after that has been declared. Directions of the model have z along the normal.
 const LIGHT = `
 vec3 trilobe_above(vec3 w) { return normalize(vec3(w.xy, max(w.z, 1e-3))); }
 
@@ -156,7 +156,7 @@ export function trilobeMaterial(renderer, source, {samples = 32, ...properties} 
     around('lights_physical_pars_fragment', '', '\n' + functions + LIGHT);
     around('lights_fragment_begin', FRAME, ENVIRONMENT);
   };
-  // Else three would take the first model's program for all.
+  // Without its own key, three would take the first model's program for all.
   material.customProgramCacheKey = () => functions;
   material.addEventListener('dispose', () => {
     tables.dispose();
