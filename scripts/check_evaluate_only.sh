@@ -26,7 +26,7 @@ if others=$(ninja -C "$build_dir" -t deps | grep -E '/(nlohmann|eigen3|glog|gfla
   exit 1
 fi
 
-# What the program loads comes with every C++ compiler.
+# The program may load only libraries that come with every C++ compiler.
 needed=$(readelf --dynamic "$consumer/build/consumer" | grep -oP '\(NEEDED\).*\[\K[^]]+')
 if others=$(grep -vE '^(libstdc\+\+|libm|libgcc_s|libc|ld-linux[^.]*)\.so' <<<"$needed"); then
   echo "the library that only evaluates needs more than the standard library: $others" >&2

@@ -67,7 +67,7 @@ def pictures(root: pathlib.Path) -> tuple[dict[pathlib.Path, Made], list[str]]:
 
 
 def difference(one: pathlib.Path, other: pathlib.Path) -> str:
-    """What differs visibly between two pictures; empty if nothing does."""
+    """The visible difference between two pictures, in words; empty if there is none."""
     pixels = [np.asarray(Image.open(path).convert("RGB")).astype(int) for path in (one, other)]
     if pixels[0].shape != pixels[1].shape:
         return " by ".join(map(str, pixels[1].shape[1::-1])) + " pixels instead of " + \

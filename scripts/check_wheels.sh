@@ -25,7 +25,7 @@ for place in "${standard_library[@]}"; do
   [[ -z $place ]] || tar -C / --exclude={dist-packages,site-packages,test,'config-*'} -c "${place#/}" | tar -C "$root" -x
 done
 copy "${programs[@]}" /etc/ld.so.conf /etc/ld.so.conf.d
-# What these load; all of glibc, and of C++ what a manylinux wheel takes from the system.
+# Libraries that these load; all of glibc, and of C++ those that a manylinux wheel takes from the system.
 libc=$(ldconfig -p | awk '$1 == "libc.so.6" && !n++ { print $NF }')
 cxx=$(ldconfig -p | awk '$1 == "libstdc++.so.6" && !n++ { print $NF }')
 mapfile -t libraries < <({

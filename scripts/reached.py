@@ -26,7 +26,7 @@ CONCERNS_ALL = re.compile(
     r"(^|/)(\.clang-tidy|dependencies\.txt)$|^scripts/(tidy\.py|reached\.py)$")
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
-# What lands together is taken to have been written within so many; scripts/nightly.sh checks all.
+# Commits that land together are taken to have been written within so many hours; scripts/nightly.sh checks all.
 LANDING_HOURS = 3
 INCLUDE = re.compile(rb'^#include "([^"]+)"', re.MULTILINE)
 ANY_INCLUDE = re.compile(rb"^#include (\S+)", re.MULTILINE)

@@ -20,7 +20,7 @@ def converted(program, file, flags=()):
 
 
 def table(program, file):
-    """What was fitted, from a file."""
+    """The table of a measurement or fit, from a file."""
     if file.endswith(".npy"):
         return numpy.broadcast_to(numpy.load(file), (*merl.SHAPE, 3))
     return merl.read(file) if file.endswith(".binary") else converted(program, file)

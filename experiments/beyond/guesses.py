@@ -1,7 +1,7 @@
-"""What other rules guess where a table has no values. Tables are as in lab.merl, invalid bins below 0."""
+"""Guesses of other rules where a table has no values. Tables are as in lab.merl, invalid bins below 0."""
 import numpy
 
-EPSILON = 1e-3  # of logarithms, as Nielsen et al.
+EPSILON = 1e-3  # offset in logarithms, as in Nielsen et al.
 RIDGE = 40.0  # the price of components, as theirs
 ROWS = 16  # one of so many bins decides on the components
 

@@ -6,7 +6,7 @@ import numpy
 from lab import fits, records, stats, tables
 from lab.fits import Fit
 
-POINTS = 32  # of a curve, at times that grow by a constant factor
+POINTS = 32  # points per curve, at times that grow by a constant factor
 TARGETS = (0.1, 0.01, 0.001)
 DEFAULT_START = "analytic"
 SOON = 5  # seconds after which errors are compared

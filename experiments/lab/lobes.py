@@ -52,7 +52,7 @@ class Model:
             if table.ndim != 2 or len(table) != (CHANNELS if factor == "F" else self.lobes):
                 raise ValueError(f"{factor}: D and G must have a table a lobe, F one a channel")
             observed = numpy.ones(table.shape, dtype=bool)
-            lists = content.get("unobserved", content.get("dead", {}))  # as it was called first
+            lists = content.get("unobserved", content.get("dead", {}))  # "dead" was its first name
             for of, unobserved in zip(observed, lists.get(factor, [])):
                 of[unobserved] = False
             setattr(self, factor, table)

@@ -1,4 +1,4 @@
-"""What scenes keep of what they read: see README.md beside this file."""
+"""Do scenes keep what they read, and no more? See README.md beside this file."""
 import json
 import pathlib
 
@@ -7,7 +7,7 @@ from lab.units import FOLDER, Product, Unit
 from renderer import units as rendering
 
 LUMINANCE = "luminance"
-GRID = (90, 90, 180)  # of MERL's tables, and of what is made of RGL's
+GRID = (90, 90, 180)  # bins of MERL's tables, and of those made from RGL's
 
 
 def _source(path):

@@ -12,7 +12,7 @@ from lab.units import FOLDER, Product, Unit
 from PIL import Image
 from renderer import pictures
 
-LOST_DB = 3.0  # of the sphere: where a fit breaks down
+LOST_DB = 3.0  # loss on the sphere at which a fit breaks down
 SPHERES, WIDTH = 8, 130  # a line; pixels
 SAME_LOBE = 0.9  # congruence of the worst lobe with that of the clean fit
 THREADS = 1
@@ -196,7 +196,7 @@ def _by_default(rows):
 
 
 def _by_corruption(rows):
-    """What the default loses, a line a corruption, a column a material."""
+    """Losses of the default, a line a corruption, a column a material."""
     materials = list(tables.groups(rows, "material"))
     lines = []
     for corruption, of in tables.groups(rows, "corruption").items():
@@ -208,7 +208,7 @@ def _by_corruption(rows):
     return tables.markdown(["corruption", "lost dB, median", "most", *materials], lines)
 
 
-# What `errors.md` shows of each fit: heading, member of a row, digits.
+# Columns of `errors.md` for each fit: heading, member of a row, digits.
 ERRORS = (("lost dB", "lost_db", ".1f"), ("Delta E", "mean_delta_e", ".2f"),
           ("mean log error", "mean_log_error", ".4f"), ("albedo off by", "albedo_error", ".4f"),
           ("worst lobe", "worst_lobe", ".2f"), ("iterations", "iterations", ".0f"),

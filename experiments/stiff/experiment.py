@@ -7,7 +7,7 @@ from lab import tables
 from lab.units import FOLDER, Unit
 
 ANSWERS = pathlib.Path(__file__).with_name("certified.json")
-# What a cell says besides its digits, by how the run ended.
+# Marks of cells besides digits, by how the run ended.
 MARKS = {"certified": "", "other": "*", "elsewhere": "", "below": " below"}
 
 

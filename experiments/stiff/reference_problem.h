@@ -500,7 +500,7 @@ bool ReferenceProblem<Real>::FillUnobserved(Factor factor, int begin, VectorOf<R
   std::vector<bool> filled(rings, false);
   for (int a = 0; a < rings; ++a) {
     const int ring = begin + a * columns;
-    // Where an entry is, `step` from k on; -1 beyond an end.
+    // Index of entry k in its ring, which wraps around; without azimuths negative beyond an end.
     const auto place = [&](int k) {
       return axis.polar() ? (k + columns) % columns : k < columns ? k : -1;
     };

@@ -1,4 +1,4 @@
-"""What each kind of --corrupt does to a sphere, at four strengths, and what a fit makes of it."""
+"""A sphere under each kind of --corrupt, at four strengths, and the fits to it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STRENGTHS = {
 }
 # These lose samples and change none. What is between the others is not measured: a clean one is beside the fit.
 LOSSES = ("gaps", "retro", "beyond", "side")
-SIDE, LEFT, GAP = 1.0, 1.05, 0.22  # of a sphere, of the names, of the line below, in inches
+SIDE, LEFT, GAP = 1.0, 1.05, 0.22  # widths of a sphere and the names, gap above the line below, in inches
 
 
 def _fitted(folder: Folder, corrupt: str) -> tuple[list[Any], str]:

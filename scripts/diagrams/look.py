@@ -1,4 +1,4 @@
-"""What all diagrams of the pages share: the look of the experiments' pictures, arrows, arcs and boxes."""
+"""Shared look of the pages' diagrams: that of the experiments' pictures, arrows, arcs and boxes."""
 
 from __future__ import annotations
 
