@@ -90,7 +90,7 @@ imported=$(bare /all/bin/python /import.py)
 echo "import trilobe: $imported"
 at_most "${imported%% *}" 0.2 "import trilobe"
 bare /all/bin/python /example.py | sed "s/^/README.md's example: /"
-# To the bit what the program fits that was built for the wheel.
+# The wheel's program and the one that was built for it have the same fits, to the bit.
 fit=(fit synth:copper@24x24x48 --noplots)
 bare /all/bin/trilobe "${fit[@]}" --out=/tmp/copper 2>"$root/notes" | grep ^verdict
 "$folder/build/trilobe/bin/trilobe" "${fit[@]}" --out="$root/tmp/here" >"$root/report" 2>&1

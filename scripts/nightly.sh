@@ -14,7 +14,7 @@ setup_packages run check ci
 
 step "Checking all of the code with clang-tidy"
 configure tidy
-# Whatever .ci/run has seen.
+# A fresh cache, so that files count which .ci/run has seen already.
 forgetful=$(mktemp -d)
 XDG_CACHE_HOME=$forgetful quietly tidy scripts/tidy.py build/tidy ""
 rm -rf "$forgetful"

@@ -29,7 +29,7 @@ function albedosAt(theta, measured) {
 
 export const albedo = theta => albedosAt(theta, null).fitted;
 
-// ---- Over all angles, one at a time ------------------------------------------------------------------------------
+// ---- Albedos over all angles, one at a time -----------------------------------------------------------------------
 
 const ALBEDO_DEGREES = [...Array.from({length: 18}, (_, k) => 5 * k), 88];
 

@@ -63,7 +63,7 @@ function stretched(table, axis, rough) {
   return out;
 }
 
-// With `all`, lobes that are off count, too: as the model is saved.
+// Applies an edit to a model. With `all`, lobes that are off count, too: the model is saved so.
 export function editedModel(base, edit, all = false) {
   const model = copyModel(base);
   if (edit.diffuse) model.d = linearOf(edit.diffuse).map(x => x / Math.PI);

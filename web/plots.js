@@ -1,6 +1,6 @@
 // Small charts on canvases, in the colours of the page.
 
-// Those of factors.png (src/io/pictures/gnuplot.h).
+// Same colours as in factors.png (src/io/pictures/gnuplot.h).
 export const LOBE_COLORS = ['#E69F00', '#56B4E9', '#CC79A7', '#8E6BBF', '#8C6D31', '#23939C', '#7D7D7D', '#A8A800'];
 export const CHANNEL_COLORS = ['#D55E00', '#009E73', '#0072B2'];
 export const CHANNEL_NAMES = ['red', 'green', 'blue'];

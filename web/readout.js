@@ -24,7 +24,7 @@ export function lookAt(at) {
   showNumbers();
 }
 
-// Again, after the light, the object or a file has changed.
+// Repeats the readout after the light, the object or a file has changed.
 export function lookAgain() {
   if (page.point) lookAt(page.point.at);
   else showNumbers();

@@ -11,7 +11,7 @@ from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
 ONE = ("solver", "threads", "start")  # the tables know one of each
-# Instead of a run: the members of the manifest by which they are given.
+# Members of the manifest by which comparisons other than runs are given.
 PEERS = {"peer": "peers", "reciprocal peer": "reciprocal_peers"}
 BUILT_IN = "built-in"
 SHOWN = "default"  # the run of which the gallery is
@@ -100,7 +100,7 @@ def _row(result, source, folder_of):
     if row["psnr_db"] is None:  # equal pictures
         row["psnr_db"] = math.inf
     row["mean_log_error"] = score["mean_log_error"]
-    # With all directions, also those that were not measured; where there are any.
+    # PSNR with all directions, also those that were not measured, where there are any.
     row["whole_psnr_db"] = looks["beyond"] and looks["beyond"]["psnr_db"]
     return {**row, **(_of_fit(folder_of[result.unit.root.key]) if result.unit.needs else {})}
 

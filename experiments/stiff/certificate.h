@@ -40,7 +40,7 @@ struct Certificate {
   double condition = 0;
 
   FactorModel model;  // the minimiser in canonical form
-  // By number in parameters(): entries that no data touch, or that differ between minimisers.
+  // Entries that no data touch, or that differ between minimisers, by index in parameters().
   std::vector<int> undetermined;
   // The largest difference of the others between minimisers from different starts, relative to the
   // largest entry of the table.

@@ -73,7 +73,7 @@ class Directions : Rows<Real, 3> {
     const Real square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
     constexpr Real kRounding = static_cast<Real>(sizeof(Real) == 4 ? 2e-6 : 1e-12);
     if (std::abs(square - 1) <= kRounding) return w;
-    // By the largest first, lest the square overflow or vanish.
+    // Scales by the largest component first, lest the square overflow or vanish.
     const Real largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
     if (!(largest > 0 && std::isfinite(largest))) return {};
     for (Real& x : w) x /= largest;

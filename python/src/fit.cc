@@ -46,7 +46,7 @@ class RunningFit {
   void Stop() { stopped_ = true; }
   bool stopped() const { return stopped_; }
 
-  // From its beginning on, a fit ends when the limit is passed.
+  // A fit that has begun ends when the limit is passed.
   void Begin() { begun_ = true; }
   void Limit(double seconds) { limit_ = seconds; }
   bool IsToEnd() const { return stopped_ || (begun_ && since_.Seconds() >= limit_); }

@@ -84,7 +84,7 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
         try {
           std::rethrow_exception(exception);
         } catch (const Error& error) {
-          // Not before it is needed, so that the module can be loaded without the package.
+          // Imported only when needed, so that the module can be loaded without the package.
           const nb::object type = nb::module_::import_("trilobe._core").attr("Error");
           PyErr_SetString(type.ptr(), error.what());
         }

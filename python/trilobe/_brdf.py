@@ -481,7 +481,7 @@ def _frozen(table: Table) -> Table:
     return table
 
 
-# From arrays to the text of a model file, which C++ checks and reads.
+# Conversion of arrays to the text of a model file, which C++ checks and reads.
 
 
 def _text_of(
@@ -576,7 +576,7 @@ def _axis_by_names(name: str, table: Table) -> dict[str, Any]:
         if theta not in table.coords:
             raise Error(f"{name} needs coords[{theta!r}], where its rows stand in radians")
         axis["rule"] = "polar"
-        # To the nearest of the numbers that people write, as 15 degrees.
+        # Rounds to numbers that people write, such as 15 degrees.
         axis["theta_nodes"] = np.degrees(as_array(table.coords[theta], theta)).round(12).tolist()
         axis["phi_nodes"] = table.shape[-1]
     elif last != _AXIS[name]:

@@ -91,7 +91,7 @@ class Tables:
         for name, axis in self._axes.items():
             size, count = axis["size"], self._count(axis)
             if axis["rule"] == "spline":
-                # With one node more on each side, and the cosines that are splined, too (docs/model.md).
+                # Splines have one node more on each side; the cosines are splined likewise (docs/model.md).
                 cosines = np.cos((np.arange(size) + 0.5) * np.pi / 2 / size)
                 ends = (2 * cosines[0] - cosines[1], 2 * cosines[-1] - cosines[-2])
                 self._columns[name] = Columns(count, size + 2, [ends[0], *cosines, ends[1]])

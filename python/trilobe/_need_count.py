@@ -151,7 +151,7 @@ class Counter:
             direct = dr.select(lit, throughput * mis_lamp * value * lamp_weight, 0)
             result += direct
             left -= direct
-            # And on.
+            # The path goes on.
             drawn, drawn_weight = bsdf.sample(context, si, sampler.next_1d(), sampler.next_2d(), go_on)
             if dr.hint(light is not None, mode="scalar"):
                 behind = si.wi.z < 0

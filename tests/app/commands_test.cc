@@ -104,7 +104,7 @@ TEST(SolversTest, ListsTheDefaultFirst) {
   }
 }
 
-// Also that every option that a solver reads has a flag.
+// Every option that a solver reads has a flag.
 TEST(SolversTest, DescribesEach) {
   for (const SolverEntry& solver : Solvers()) {
     const ProgramResult one = RunProgram({"solvers", solver.name});
@@ -183,7 +183,7 @@ TEST(ProgramTest, FitsFilesOfAnyName) {
   }
 }
 
-// Whatever a name holds, it neither breaks the line nor steers the terminal.
+// Control characters in names neither break the line nor steer the terminal.
 TEST(ProgramTest, ShowsNamesInPrintableForm) {
   const TemporaryFolder folder;
   const std::string name = "a\nb\x1b[31m";
@@ -465,7 +465,7 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   EXPECT_EQ(read["samples"]["valid"], table["bins"]["valid"]);
   EXPECT_EQ(read["min"], table["min"]);
   EXPECT_EQ(read["max"], table["max"]);
-  // From CSV to CSV, all of it or a part.
+  // CSV is converted to CSV, all of it or a part.
   EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy}).status, 0);
   json again = json::parse(RunProgram({"info", copy, "--json"}).out);
   EXPECT_EQ(again["samples"], read["samples"]);
@@ -473,7 +473,7 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy, "--max_angle=10"}).status, 0);
   again = json::parse(RunProgram({"info", copy, "--json"}).out);
   EXPECT_LT(again["samples"]["valid"], read["samples"]["valid"]);
-  // And from a model.
+  // A model is converted to CSV, too.
   Write(folder / "model.json", kLambertianModel);
   const ProgramResult model = RunProgram(
       {"convert", folder / "model.json", "--max_angle=5", "--out=" + (folder / "model.CSV")});
@@ -642,7 +642,7 @@ TEST(DataNotes, TellOfADetectorInItsOwnLight) {
   }
 }
 
-// By another light, and as a picture.
+// `score` renders under another light, and writes pictures.
 TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);

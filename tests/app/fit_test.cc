@@ -307,7 +307,7 @@ TEST(Fit, TellsWhatTheMeasurementLacksOfReciprocityWhereThatIsMuch) {
 TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  // So that there is little to do, and an edge of the data.
+  // The flags make a quick fit with an edge of the data.
   const ProgramResult result =
       RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_parameters=150",
                   "--max_iterations=2", "--lobes=1", "--max_angle=40", "--noise=0.02", "--verbose",
@@ -474,7 +474,7 @@ TEST(Fit, RawReportsAndStoresWhatTheSolverFound) {
   }
 }
 
-// So that what differs between seeds is the fit, and not what was fitted.
+// With --data_seed, seeds change the fit, and not the data.
 TEST(Fit, ADataSeedKeepsTheDataWhileTheSeedMovesTheStart) {
   const TemporaryFolder folder;
   const auto initial = [&](const char* name, const std::vector<std::string>& seeds) {

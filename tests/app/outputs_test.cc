@@ -315,7 +315,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
 TEST(FitMany, WhatIsNotWholeIsFittedAgain) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  // By itself, without the thumbnail that a page needs.
+  // A fit by itself has no thumbnail, which a page needs.
   ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + out + "/felt"})).status, 0);
   const std::vector<std::string> command =
       Quick({"fit", "synth:felt@30x30x60", "--shard=1/1", "--plots", "--out=" + out});

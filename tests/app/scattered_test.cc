@@ -71,7 +71,7 @@ TEST_F(Scattered, StoresTheModelThatWasSolved) {
     const Rgb expected = Evaluate(file.model, at), value = prepared.Value(at.wi, at.wo);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], 1e-9 * (1 + expected[c]));
   }
-  // And it can be held against the whole table that the samples are of.
+  // The model can be compared with the whole table that the samples are of.
   const json whole =
       json::parse(RunProgram({"score", path, "synth:rubber@30x30x60", "--json"}).out);
   EXPECT_LT(whole["relative_objective"], 0.1);

@@ -55,7 +55,7 @@ class CachedCompiler(unittest.TestCase):
         """How many of the two objects ccache had when all was built."""
         environment = {**os.environ, "CCACHE_DIR": str(self.folder / "cache")}
         self.configure(root, compiler, environment)
-        # Not those of what CMake tried above.
+        # Hits of what CMake tried above do not count.
         subprocess.run(["ccache", "--zero-stats"], check=True, capture_output=True,
                        env=environment)
         self.build(root, environment)

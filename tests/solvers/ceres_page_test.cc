@@ -67,7 +67,7 @@ TEST(CeresPage, EndsWhereLmDoesWithoutThePrior) {
   EXPECT_GT(objective.Value(smooth), E);
 }
 
-// By bounds alone Ceres stops above.
+// Ceres stops higher by bounds alone.
 TEST(CeresPage, EndsWhereLmDoesThoughParametersEndAtZero) {
   const Measurement plastic = LoadMeasurement("synth:plastic@12x10x16", {.noise = 0.03});
   const Objective objective(SamplesOf(plastic), ModelSpec::SharedFactors(1, kGrid),

@@ -64,7 +64,7 @@ struct Linearization {
   VectorXd r;
 };
 
-// By automatic differentiation, sample by sample.
+// J and r by automatic differentiation, sample by sample.
 Linearization Linearize(const Objective& objective, const FactorModel& model) {
   ParameterBlocks layout(model.spec());
   layout.Read(model);

@@ -140,7 +140,7 @@ export function trilobeMaterial(renderer, source, {samples = 32, ...properties} 
   const anisotropic = !/#define TB_PHIS_I 1\n/.test(source);
   const defines = {TRILOBE_THETAS: anisotropic ? 32 : 64, TRILOBE_PHIS: anisotropic ? 32 : 1};
   const drawn = drawDirections(renderer, functions, tables, anisotropic ? 256 : 1024, defines);
-  // With an anisotropy, three makes tangents.
+  // three makes tangents for materials with an anisotropy.
   const material = new THREE.MeshPhysicalMaterial({...properties, anisotropy: 1});
   Object.assign(material.defines, defines, {TRILOBE_SAMPLES: samples});
   material.onBeforeCompile = shader => {

@@ -39,7 +39,7 @@ std::vector<double> RingAndBorder(int n, int border, int reach) {
   return A;
 }
 
-// By the products with a vector, in which each entry has its part.
+// Compares products with a random vector, to which every entry contributes.
 void ExpectMultipliesBack(int n, const std::vector<double>& A) {
   std::vector<double> factor = A;
   ASSERT_TRUE(FactorCholesky(n, factor.data(), 2));

@@ -163,7 +163,7 @@ TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
   EXPECT_LT(LargestBeyond(objective, measured, overshoot), 3 * Largest(measured));
 }
 
-// For a model that will be refitted anyway the refit ends once E is back.
+// If the model will be refitted anyway, the refit may end once E is back.
 TEST(DataEdge, MayEndOnceEIsBack) {
   const Objective objective = MakeObjective(Measured(2, 75), ModelSpec::SharedFactors(2, kGrid));
   const FactorModel fitted = Fitted(objective);
@@ -300,7 +300,7 @@ TEST(DataEdge, TheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Before those that are tied there may be one that no sample reads.
+// An entry that no sample reads may stand before those that are tied.
 TEST(DataEdge, EntriesAreNotTiedToAnUnobservedOne) {
   BrdfTable measured = Measured(1, 75);
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);

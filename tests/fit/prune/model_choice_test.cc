@@ -170,22 +170,22 @@ TEST(ModelChoice, TheJudgeDecides) {
                                 }};
   options.stop = nullptr;  // a null function never stops
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).model.spec().lobes, 3);
-  // To one that sees no difference the fitted model is good enough.
+  // If the judge sees no difference, the fitted model is good enough.
   options.judge = [](const FactorModel&) { return 1.0; };
   ChosenModel result = ChooseModel(fit.objective, fit.model, options);
   EXPECT_EQ(result.chosen, 0);
   EXPECT_TRUE(std::ranges::equal(result.model.parameters(), fit.model.parameters()));
-  // One that says NaN of some.
+  // The judge says NaN for some.
   options.judge = [](const FactorModel& model) {
     return model.spec().D.per_channel ? 2.0 : std::nan("");
   };
   result = ChooseModel(fit.objective, fit.model, options);
   EXPECT_TRUE(result.model.spec().D.per_channel);
   EXPECT_EQ(result.candidates[0].score, -kInfinity);
-  // Or of all.
+  // The judge says NaN for all.
   options.judge = [](const FactorModel&) { return std::nan(""); };
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).chosen, 0);
-  // There must be one.
+  // A judge is required.
   options.judge = nullptr;
   EXPECT_THROW(ChooseModel(fit.objective, fit.model, options), Error);
 }
@@ -280,7 +280,8 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
   }
 }
 
-// Whatever else speaks for it. Here the data have the ring, so no smoother form is a fit of them.
+// Rings rule a candidate out, whatever its score. Here the data have the ring: no smoother form
+// fits.
 TEST(ModelChoice, WhatHasRingsUnderEvenLightIsNotTaken) {
   constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 30, .phi_d = 8};
   FactorModel material(ModelSpec::SharedFactors(1, kFine));

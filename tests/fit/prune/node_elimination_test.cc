@@ -174,7 +174,7 @@ Constraint MeanOfNeighbours(int k) {
   return c;
 }
 
-// So many that changes have to wait, and wait no longer, more than once.
+// There are so many constraints that pending changes are applied more than once.
 TEST(Tableau, ImposesAndHoldsAsTheEquationsDo) {
   Quadratic q;
   Tableau tableau = MakeTableau(q);

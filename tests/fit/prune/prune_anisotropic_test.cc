@@ -67,7 +67,7 @@ BrdfSamples SamplesOfModel(const FactorModel& model) {
   return samples;
 }
 
-// With a wiggle that no model has, so that E is not 0.
+// Multiplies samples by a wiggle that no model has, so that E is not 0.
 BrdfSamples Uneven(BrdfSamples samples) {
   for (size_t j = 0; j < samples.rho.size(); ++j) {
     for (double& x : samples.rho[j]) x *= 1 + 0.03 * std::sin(static_cast<double>(7 * j));

@@ -166,7 +166,7 @@ TEST(JudgedAsWritten, InLuminance) {
   ExpectJudgedAsWritten(material, InGrey(Measured(kTable, 60)), kFew, /*rounding=*/1e-13);
 }
 
-// By what is read of the measurement, of the model as its file has it.
+// Checks scores by the reads of the measurement, for the model as its file has it.
 void ExpectJudgedByReads(SceneMaterial material) {
   const TestDirectory directory;
   const SceneFitSettings settings = Settings(FitCache(directory.path()));

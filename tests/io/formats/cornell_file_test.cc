@@ -77,7 +77,7 @@ TEST(CornellFile, ReadsPublishedMeasurements) {
     const Measurement measurement = LoadMeasurement(folder + expected.name + std::string(".brdf"));
     EXPECT_EQ(measurement.counts.total, 1439);
     EXPECT_EQ(measurement.counts.valid, 1439);
-    // Beyond 400 to 700 nm numpy left the spectrum out, and here it is constant.
+    // numpy left the spectrum out beyond 400 to 700 nm, where it is constant here.
     EXPECT_NEAR(measurement.out_of_gamut, expected.out_of_gamut, 12);
     Rgb mean{};
     for (const Rgb& rho : measurement.samples.rho) {

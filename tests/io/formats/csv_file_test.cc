@@ -61,7 +61,7 @@ TEST(CsvFile, HoldsScatteredSamples) {
   EXPECT_EQ(WriteMeasurement(one, directory.Path("y.csv")), "CSV, 4 samples");
   const Measurement two = LoadMeasurement(directory.Path("y.csv"));
   ExpectSameSamples(one.samples, two.samples);
-  // With the order of the directions, that half and difference angles do not tell.
+  // The order of the directions is kept, which half and difference angles do not tell.
   EXPECT_NEAR(two.samples.directions[1].theta_i, DegreesToRadians(60.5), 1e-15);
   EXPECT_NEAR(two.samples.directions[1].phi_i, DegreesToRadians(123.456), 1e-15);
 }

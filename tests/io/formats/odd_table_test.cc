@@ -30,7 +30,7 @@ std::string ReadError(const std::string& text, const SourceOptions& options = {}
   return ErrorOf([&] { Read(text, options); });
 }
 
-// That `text` says what kHead + kRows does, and what is noted of it.
+// Checks that `text` reads as kHead + kRows, and the note on it.
 void ExpectBoth(const std::string& text, const std::string& note,
                 const SourceOptions& options = {}) {
   const Measurement is = Read(text, options), expected = Read(kHead + kRows);

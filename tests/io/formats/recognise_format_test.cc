@@ -18,7 +18,7 @@ namespace {
 
 using testing::StartsWith;
 
-// By name; "" where no format knows the bytes.
+// Name of the format; "" if no format recognises the bytes.
 std::string FormatOf(const std::string& bytes) {
   const MeasurementFormat* const format = RecogniseFormat(bytes);
   return format == nullptr ? "" : format->name;
@@ -88,7 +88,7 @@ TEST(RecogniseFormat, IsWhatEveryReaderNames) {
             "file");
 }
 
-// Before its size is looked at, or its bytes are.
+// The file is named before its size or its bytes are looked at.
 TEST(RecogniseFormat, NamesALargeFile) {
   const TestDirectory directory;
   const std::string path =

@@ -104,7 +104,7 @@ TEST(RglExport, SpectralFilesHaveTheFieldsThatPbrtReads) {
                                 {.max_error = 1, .spectral = true}));
 }
 
-// And the spectra of a file are read, as are its colours.
+// A spectral file can be read back, its spectra as well as its colours.
 TEST(RglExport, ASpectralModelKeepsItsWavelengths) {
   const SpectralModel model =
       AnalyticSpectralModel(ModelSpec::SharedFactors(2), VisibleWavelengths(7));

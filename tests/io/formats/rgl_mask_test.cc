@@ -1,4 +1,4 @@
-// Which bins of an RGL file count as measured (docs/samples.md).
+// Rules by which bins of an RGL file count as measured (docs/samples.md).
 
 #include "io/formats/rgl_mask.h"
 

@@ -236,7 +236,7 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
   }
 }
 
-// By what the highlight shows, which is within a tenth of the tilt.
+// The tilt is taken from the highlight, which shows it within a tenth.
 TEST(LoadMeasurement, TakesOutTheTiltThatTheHighlightShows) {
   const std::string source = "synth:aluminium@60x30x60";
   const SourceOptions shown = {.corrupt = "tilt:1", .tilt_deg = std::nullopt, .outliers = true};

@@ -203,7 +203,7 @@ TEST(CompareAppearance, ATenthMoreIsATenthOff) {
   }
 }
 
-// By a Lambertian measurement whose numbers are known: 1/pi sr^-1 reflects all light.
+// Lambertian materials have known albedos: 1/pi sr^-1 reflects all light.
 TEST(CompareAppearance, KnowsTheAlbedoOfALambertianMaterial) {
   const AppearanceReport report = CompareAppearance(Constant(0.5 / kPi), Grey(0.25 / kPi), Quick());
   for (size_t k = 0; k < report.albedo.theta_i.size(); ++k) {
@@ -336,7 +336,7 @@ TEST(CompareAppearance, OverflowIsAnError) {
   for (const double bad : {1e308, kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT(ErrorOf(table, Grey(bad)), testing::HasSubstr("overflow")) << bad;
   }
-  // Beyond the data only.
+  // The overflow is beyond the data only.
   BrdfTable part = table;
   Unmeasure([](const HalfDiffAngles& angles) { return angles.theta_d > 1; }, &part);
   const AngularBrdf unbounded = [](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {

@@ -31,7 +31,7 @@ Direction Cross(const Direction& a, const Direction& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// From all sides, from the eye itself, and from behind.
+// Lights from all sides, from the eye itself, and from behind.
 std::vector<Light> TestLights() {
   Random random(3);
   std::vector<Light> lights = {{{0, 0, 1}, {1, 2, 3}},

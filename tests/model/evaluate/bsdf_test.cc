@@ -80,7 +80,7 @@ TEST(BsdfSampling, DrawsWithItsDensity) {
 TEST(BsdfSampling, WeightsAreBoundedAndAddUpToTheAlbedo) {
   constexpr int kDraws = kSanitized ? 2000 : 10000;
   for (const auto& [name, model] : TestMaterials()) {
-    // Whose neighbours have nothing to do with each other; and where a lobe is narrower by
+    // Left out: a model whose neighbouring entries are unrelated, and one whose lobe is narrower by
     // 1 / cos^2 theta_d, which has more detail towards grazing than the table.
     if (name == "random numbers" || name == "stretched to the limits") continue;
     const Bsdf<double> bsdf(model);

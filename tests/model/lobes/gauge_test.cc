@@ -329,7 +329,7 @@ TEST(Gauge, UnobservedBinsAreFilledFromTheirNeighbours) {
     std::vector<double> x, y;
     const std::vector<double>& coverage = objective.coverage();
     for (int j = 0; j < k; ++j) {
-      // Those that hardly a sample reads have no say.
+      // Entries that hardly a sample reads do not count.
       const bool well = j < 3 || coverage[offset + j] >= 0.05 * coverage[offset + j - 3];
       if (unobserved[offset + j] || !well) continue;
       x.push_back(spec.axis(factor).Theta(j));

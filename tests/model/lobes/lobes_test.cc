@@ -33,7 +33,7 @@ double LargestDifference(const FactorModel& a, const FactorModel& b) {
   return largest;
 }
 
-// Those that can be split, with every one of their lobes.
+// Calls `visit` for each lobe of the models whose lobes can be split.
 template <typename Visit>
 void ForEachLobe(const Visit& visit) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {

@@ -203,7 +203,7 @@ TEST(Outliers, WhereAzimuthsMatterOnlyNothingIsOne) {
   EXPECT_EQ(CountsOf(left_of("outliers:0.05")).valid, all);
   const Measurement left = left_of("zeros:0.05");
   EXPECT_NEAR(CountsOf(left).valid, 0.95 * all, 0.02 * all);
-  // But where both of a pair are.
+  // Zeros stay only where both values of a reciprocal pair are 0.
   EXPECT_LE(std::ranges::count(left.samples.rho, Rgb{}), 1.5 * 0.05 * 0.05 * all);
   // Velvet reflects nothing from some directions, into others and back.
   Measurement velvet = LoadMeasurement("synth:velvet@6x24");

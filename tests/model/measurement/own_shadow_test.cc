@@ -69,7 +69,7 @@ TEST(OwnShadow, IsNotWhatMaterialsDo) {
   }
 }
 
-// With so many of the samples for which `is_limited` holds, and all others.
+// At most `most` of the samples for which `is_limited` holds, and all others.
 BrdfSamples WithFew(const BrdfSamples& samples, int most,
                     const std::function<bool(double theta_d_deg)>& is_limited) {
   BrdfSamples few;
@@ -196,7 +196,7 @@ TEST(OwnShadow, IsLeftOutAndTold) {
                                          HasSubstr(std::to_string(in_shadow) + " samples below 8"),
                                          HasSubstr("--min_theta_d=0"))));
 
-  // Within a limit that leaves no light to hold it against, too.
+  // The shadow is also found within a limit that leaves no light to compare with.
   const Measurement near = LoadMeasurement(path, {.max_angle_deg = 20});
   EXPECT_EQ(near.counts.below_min_theta_d, in_shadow);
   EXPECT_THAT(near.notes, testing::SizeIs(1));

@@ -243,7 +243,7 @@ TEST(UnmeasuredSamples, ZerosAboutTheLightAreGapsWhereEachSampleHasItsOwn) {
   const Measurement shadow = scattered(12);
   EXPECT_GT(lost, 20);
   EXPECT_EQ(FindZeroGaps(shadow.samples).size(), lost);
-  // Too far from the light for a detector.
+  // These zeros reach too far from the light for the shadow of a detector.
   EXPECT_THAT(FindZeroGaps(scattered(35).samples), IsEmpty());
 }
 

@@ -83,7 +83,7 @@ TEST(FoldedSamples, ConstantIsWhatPairsDisagreeBy) {
   EXPECT_NEAR(objective.folded_samples()->constant, expected, 1e-12 * expected);
 }
 
-// By both cells of G, in stretches that cover all samples.
+// Samples are sorted by both cells of G, in ranges that cover them all.
 TEST(FoldedSamples, AreSortedByTheirCells) {
   const Objective objective = ScatteredObjective(Scattered(ValidSamples(RandomTable(kGrid, 7))));
   const FoldedSamples& folded = *objective.folded_samples();

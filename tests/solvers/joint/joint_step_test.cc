@@ -41,7 +41,7 @@ void ForEachExactCase(const Visit& visit) {
   }
 }
 
-// So near to an exact fit that rounding is felt.
+// Decades of decrease at which a fit is exact to rounding.
 constexpr double kFloorDecades = 27;
 
 // Undamped Gauss-Newton steps square the error: E' <= C^2 E^2, with E in units of the black model's

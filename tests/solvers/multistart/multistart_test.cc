@@ -106,7 +106,7 @@ TEST_P(Multistart, NamesTheStartsBestFirst) {
   EXPECT_THAT(Names(summary), testing::UnorderedElementsAreArray(expected));
   EXPECT_TRUE(std::ranges::is_sorted(summary.starts, {}, &StartResult::objective));
   EXPECT_LT(summary.starts.front().objective, summary.starts.back().objective);
-  // So few samples are not thinned: E is that of all.
+  // These few samples are not thinned: E is that of all.
   double least = summary.initial_objective;
   for (const IterationRecord& record : summary.trace) least = std::min(least, record.objective);
   EXPECT_LE(least, summary.starts.front().objective * (1 + 1e-12));
@@ -236,8 +236,9 @@ TEST_P(Multistart, LeavesUnobservedBinsToTheCaller) {
   }
 }
 
-// With so many samples that thinning leaves most of them out; a few of these hold most of E, so
-// that it has to look at more.
+// Thinning leaves most of these samples out; a few of them hold most of E, so that it has to look
+// at
+// more.
 TEST_P(Multistart, FitsWhatItRacedWithoutAsWell) {
   constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 8, .phi_d = 96};
   const ModelSpec spec = ModelSpec::SharedFactors(1, kFine);
