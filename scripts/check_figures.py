@@ -120,7 +120,7 @@ def commands(source: str, page: str, start: int, end: int) -> str:
 
 
 def figures(page: pathlib.Path) -> Iterator[Figure]:
-    """Those that a page binds; Wrong if one does not stand below its comment."""
+    """The figures that a page binds; Wrong if one does not stand below its comment."""
     text = page.read_text()
     for comment in COMMENT.finditer(text):
         block = BLOCK.match(text, comment.end())

@@ -33,14 +33,14 @@ VISIBLE, SHARE = 32, 1e-5
 
 
 class Made(NamedTuple):
-    """How a picture is made, and where that is said."""
+    """The command that makes a picture, and the page that has it."""
     command: str
     nightly: bool
     page: str
 
 
 def pictures(root: pathlib.Path) -> tuple[dict[pathlib.Path, Made], list[str]]:
-    """How each picture of the pages is made, and what is wrong with what they say."""
+    """The commands of all pictures of the pages, and errors in what pages say of them."""
     shown: dict[pathlib.Path, str] = {}
     made: dict[pathlib.Path, Made] = {}
     wrong: list[str] = []

@@ -352,7 +352,7 @@ def _against_table(rows):
 
 
 def _rank_table(rows):
-    """How the program's own measure orders the materials, and how the renderer does."""
+    """Compares the order of the materials by the program's own measure with that by the renderer."""
     lines = []
     sphere = [row for row in rows if row["scene"] == "sphere"]
     databases = {"all": sphere, **tables.groups(sphere, "database")}

@@ -37,9 +37,9 @@ def nearest(table):
 
 
 def components(table, others, weight):
-    """By principal components of other whole tables, each channel by itself (Nielsen, Jensen, Ramamoorthi 2015, On
-    Optimal, Minimal BRDF Sampling for Reflectance Acquisition): logarithms relative to the median of all, weighted by
-    `weight` [SHAPE], cos theta_i cos theta_o. What is valid stays."""
+    """Guesses by principal components of other whole tables, each channel by itself (Nielsen, Jensen, Ramamoorthi 2015,
+    On Optimal, Minimal BRDF Sampling for Reflectance Acquisition): logarithms relative to the median of all, weighted
+    by `weight` [SHAPE], cos theta_i cos theta_o. What is valid stays."""
     known = is_measured(table).ravel()
     weight = numpy.maximum(weight, EPSILON).ravel()[:, None].astype(numpy.float32)
     columns = numpy.concatenate([numpy.maximum(other, 0).reshape(-1, 3).astype(numpy.float32) for other in others], 1)

@@ -86,7 +86,7 @@ def _markdown_of_samples(rows):
 
 
 def _figure(rows):
-    """How often a fault is told, by its strength."""
+    """Draws the share of faults that are told, by their strength."""
     from lab import plots
     labels = {"scale": "values times", "saturated": "share of signals that is saturated"}
     faults = {fault: of for fault, of in tables.groups(rows, "fault").items() if fault in labels}

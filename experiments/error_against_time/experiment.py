@@ -288,7 +288,7 @@ def _start_figure(runs, threads):
 
 
 def _above(row):
-    """How far a fit ends above the book of records; without a record above the lowest E here."""
+    """The excess of a fit's E over the book of records; without a record, over the lowest E here."""
     return row["excess"] if row.get("over_record") is None else row["over_record"]
 
 

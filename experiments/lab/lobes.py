@@ -73,7 +73,7 @@ def congruence(a, b, weights=1.0):
 
 
 def scores(a, b):
-    """How alike every lobe of a and every lobe of b are in shape, whatever their strength. [a.lobes][b.lobes]
+    """Likeness in shape of every lobe of a and every lobe of b, whatever their strength. [a.lobes][b.lobes]
 
     It is the product of the congruences of D, weighted by the projected solid angle of its bins,
     of G and of s: 1 for lobes that differ in scale alone, 0 for lobes that have nothing in common

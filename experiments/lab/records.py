@@ -64,7 +64,7 @@ def lowest(report, material):
 
 
 def excess(objective, report, material):
-    """How far an E is above the record of this fit's measurement, weighting and form; None without a record."""
+    """Relative excess of an E over the record of this fit's measurement, weighting and form; None without a record."""
     least = lowest(report, material)
     return objective / least - 1 if 0 < least < math.inf else None
 

@@ -129,7 +129,7 @@ class Store:
         return self.folder(unit).is_dir()
 
     def record(self, unit):
-        """How a unit was made: command, seconds, machine. None if it is not made."""
+        """The record of a unit: command, seconds, machine. None if it is not made."""
         try:
             return json.loads((self.folder(unit) / "unit.json").read_text())
         except FileNotFoundError:

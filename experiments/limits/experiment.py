@@ -10,7 +10,7 @@ COLUMNS = ("parameters", "relative_objective", "of_paper", "held_out_objective",
 
 
 def units(setting):
-    """For each source its default fit, and all forms from that."""
+    """The default fit of each source, and all forms from that."""
     manifest = setting.manifest
     made = []
     for source in setting.every(manifest["every"]):

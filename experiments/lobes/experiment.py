@@ -352,7 +352,7 @@ def _stops(rows):
 
 
 def _materials_with(rows, column):
-    """On how many materials STABLE of the runs have the same lobes."""
+    """The number of materials on which STABLE of the runs have the same lobes."""
     count = 0
     for of in tables.groups(rows, "material").values():
         others = [row for row in of if row[column] is not None and not (column == "agreement" and row["reference"])]
@@ -361,7 +361,7 @@ def _materials_with(rows, column):
 
 
 def _seen(rows):
-    """By how much the PSNR of the sphere differs between the runs on a material: median and range over these."""
+    """Differences of the sphere's PSNR between the runs on a material: median and range over the materials."""
     values = [[row["psnr_db"] for row in of] for of in tables.groups(rows, "material").values()]
     return _range([max(of) - min(of) for of in values], 2)
 

@@ -30,7 +30,7 @@ def _renders(setting):
 
 
 def units(setting):
-    """For each way to read the materials a run of `trilobe fit --scene`."""
+    """A run of `trilobe fit --scene` for each way to read the materials."""
     manifest = setting.manifest
     renders = _renders(setting)
     settings = {key: manifest[key] for key in ("pairs", "budget", "luminance_budgets", "seed")}
@@ -111,7 +111,7 @@ def _budgets_table(rows):
 
 
 def _growth(of):
-    """By which factor a looser budget keeps more than a tighter one, at most."""
+    """The largest factor by which a looser budget keeps more than a tighter one."""
     of = sorted(of, key=lambda row: row["budget"])
     return max([1.0, *(later["parameters"] / row["parameters"] for k, row in enumerate(of) for later in of[k + 1:])])
 

@@ -1,4 +1,4 @@
-"""How much of the difference between two pictures is noise of their paths."""
+"""The share of the difference between two pictures that is noise of their paths."""
 import numpy
 
 from lab import tables

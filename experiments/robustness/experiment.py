@@ -47,7 +47,7 @@ def _known(setting):
 
 
 def _sources(setting, of):
-    """Those that a set of fits names, or every n-th of the lists, or all."""
+    """The sources that a set of fits names, or every n-th of the lists, or all."""
     known = _known(setting)
     given = setting.every(of["every"]) if "every" in of else setting.sources
     return [source for source in given + known
@@ -122,8 +122,7 @@ def _same_lobes(model, clean):
 
 
 def _albedo_error(score):
-    """By how much the share of light that is reflected is off, in the mean over theta_i; nan where
-    no appearance was compared."""
+    """Mean error over theta_i of the share of light that is reflected; nan where no appearance was compared."""
     appearance = score.get("appearance") or {}
     return (appearance.get("albedo") or {}).get("mean_error", math.nan)
 
@@ -216,8 +215,8 @@ ERRORS = (("lost dB", "lost_db", ".1f"), ("Delta E", "mean_delta_e", ".2f"),
 
 
 def _errors(rows):
-    """By default, a line a corruption: errors against the clean table, and what a fit took; medians
-    over the materials, those of an earlier run having no albedo."""
+    """The table of the default, a line a corruption: errors against the clean table, and what a fit took; medians over
+    the materials, those of an earlier run having no albedo."""
     lines = []
     for corruption, of in tables.groups(rows, "corruption").items():
         known = [[row[name] for row in of if not math.isnan(row.get(name, math.nan))]
@@ -303,8 +302,7 @@ def _figure(rows):
 
 
 def _in_order(rows):
-    """By kind, in the order of the first ones, and by strength: weakest first where a kind has
-    several of one sign."""
+    """Rows by kind, in the order of the first ones, and strength, weakest first for several of one kind and sign."""
     kinds = list(tables.groups([{"kind": kind_of(row["corruption"])} for row in rows], "kind"))
 
     def place(row):

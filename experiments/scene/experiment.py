@@ -16,7 +16,7 @@ def _absolute(path):
 
 
 def units(setting):
-    """For each budget the scene's fit, which reuses nothing, and its comparison with full fits.
+    """The scene's fit for each budget, which reuses nothing, and its comparison with full fits.
 
     The full fits are those of the first comparison, which the others take out of its cache.
     """

@@ -69,14 +69,14 @@ def units(setting):
 
 
 def _numbers(model):
-    """How many numbers a model file stores in its tables or coefficients."""
+    """The number of numbers that a model file stores in its tables or coefficients."""
     if isinstance(model, dict):
         return len(model["values"])
     return sum(map(_numbers, model)) if isinstance(model, list) else 1
 
 
 def _exponents(model):
-    """How many exponents say how the lobes' highlights are stretched."""
+    """The number of exponents by which the lobes' highlights are stretched."""
     stretch = model.get("stretch", [])
     return 2 * (len(stretch) if isinstance(stretch, list) else 1)
 

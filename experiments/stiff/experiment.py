@@ -16,7 +16,7 @@ def _certificates():
 
 
 def units(setting):
-    """One unit a case, all solvers in it."""
+    """A unit for each case, with all solvers in it."""
     known = [certificate["name"] for certificate in _certificates()]
     wanted = setting.manifest["cases"]
     return [Unit(f"stiff/{name}", setting.program("stiff"),

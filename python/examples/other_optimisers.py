@@ -146,7 +146,7 @@ OURS = ("awls", "lm", "auto")
 
 
 def compare(measurement, names, seconds):
-    """For each optimiser, (processor seconds, lowest E so far) at each evaluation."""
+    """Traces by optimiser: (processor seconds, lowest E so far) at each evaluation."""
     objective = trilobe.Objective(measurement, threads=1)
     start = objective.start()
     traces = {}

@@ -233,7 +233,7 @@ class Brdf:
 
     @property
     def lobes(self) -> int:
-        """How many specular lobes there are."""
+        """The number of specular lobes."""
         return self._material.lobes
 
     @property
@@ -273,7 +273,7 @@ class Brdf:
         return self._table("G")
 
     def unobserved(self, factor: str) -> NDArray[np.bool_]:
-        """Which entries of "D", "F" or "G" no sample of the fit has touched, in the table's shape."""
+        """Marks entries of "D", "F" or "G" that no sample of the fit has touched, in the table's shape."""
         if not isinstance(factor, str) or factor not in _AXIS:
             raise Error(f"there is no factor {' '.join(repr(factor).split())[:60]}; there are D, F and G")
         marks: NDArray[np.bool_] = self._material.unobserved(factor).astype(bool)
@@ -281,7 +281,7 @@ class Brdf:
 
     @property
     def fit(self) -> dict[str, Any]:
-        """How the model came about, as its file says; empty of one that was made of arrays."""
+        """The origin of the model, as its file says; empty for one that was made of arrays."""
         fit = json.loads(self._text).get("fit", {})
         return fit if isinstance(fit, dict) else {}
 

@@ -120,7 +120,7 @@ class _Fit:
         return about.texels(materials, about.split(np.concatenate([empty, *tiles])))
 
     def in_folder(self, folder: Path, shard: Any) -> Texels | None:
-        """Those of a shard, or all and their pictures."""
+        """Fits texels into a folder: those of a shard, or all and their pictures."""
         import shutil
 
         tiles, about = self._source.tiles(), self._about(self._hash())
@@ -169,7 +169,7 @@ class _Fit:
         return find(self._problem, self._source.spread(_LOOKED_AT), self._shared, options)
 
     def _kept_materials(self, folder: Path) -> list[Brdf]:
-        """Those of a folder; if there is none, it is made. Of shards that do so at once, the first decides."""
+        """Materials of a folder, which is made if need be; of shards that make it at once, the first decides."""
         import shutil
         import tempfile
 

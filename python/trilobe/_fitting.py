@@ -196,7 +196,7 @@ def score(
 
 
 class LobeMatch(NamedTuple):
-    """How far two models have the same lobes, as `match_lobes` returns it."""
+    """The likeness of two models' lobes, as `match_lobes` returns it."""
 
     agreement: float
     """The mean match of all lobes of both, weighted by the light that they reflect; 1: the same."""

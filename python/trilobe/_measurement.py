@@ -150,7 +150,7 @@ class Measurement:
         return pandas.DataFrame({**self._angles(), **colours, "reason": reason})
 
     def _angles(self) -> dict[str, NDArray[np.float64]]:
-        """By name, of all of them [rad]."""
+        """Angles of all samples by name [rad]."""
         angles: dict[str, NDArray[np.float64]] = {}
         for end, w in (("i", self.wi), ("o", self.wo)):
             angles[f"theta_{end}"] = np.arctan2(np.hypot(w[:, 0], w[:, 1]), w[:, 2])
@@ -174,7 +174,7 @@ class Measurement:
 
     @property
     def grid(self) -> tuple[int, int, int] | None:
-        """How many bins of theta_h, theta_d and phi_d a table has; None for scattered samples."""
+        """The numbers of bins of theta_h, theta_d and phi_d that a table has; None for scattered samples."""
         return tuple(self._data.grid) or None
 
     @property
@@ -189,7 +189,7 @@ class Measurement:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many samples there were, how many are valid, and why the others are not."""
+        """The numbers of all samples, of valid ones, and of others by reason."""
         counts: dict[str, int] = json.loads(self._data.counts_json)
         return counts
 
@@ -224,7 +224,7 @@ class Measurement:
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """Which of them a fit sees, (n,)."""
+        """Whether a fit sees a sample, (n,)."""
         return self._cached("valid", lambda: np.asarray(self.reason == 0))
 
     def _cached(self, name: str, make: Callable[[], NDArray[Any]]) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""How half vectors are drawn in compiled variants of Mitsuba."""
+"""Sampling of half vectors in compiled variants of Mitsuba."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Nodes:
         self._guide = mi.UInt32(np.clip(begin, 0, self._last).astype(np.uint32))
 
     def interval(self, x: Any, coordinate: Any, active: Any = True) -> tuple[Any, Any, Any]:
-        """Between which nodes x lies: the first of them, its value, and their distance."""
+        """The nodes between which x lies: the first of them, its value, and their distance."""
         low = dr.gather(mi.UInt32, self._guide, mi.UInt32(dr.clip(coordinate, 0, 1) * self.BINS), active)
         above = dr.gather(mi.Float, self._values, low + 1, active)
         low = dr.select((above <= x) & (low < self._last), low + 1, low)

@@ -51,7 +51,7 @@ def mix(columns: Columns, places: list[tuple[Any, Any]], active: Any) -> list[An
 
 
 def linear(coordinate: Any, size: int) -> list[tuple[Any, Any]]:
-    """Between the centres of bins of unit width, constant beyond the outer ones."""
+    """Entries and weights of linear interpolation between the centres of bins of unit width, constant beyond."""
     x = dr.clip(coordinate - 0.5, 0, size - 1)
     low = dr.minimum(mi.UInt32(x), max(size - 2, 0))
     t = x - mi.Float(low)

@@ -21,7 +21,7 @@ class Picture(NamedTuple):
 
 
 class Difference(NamedTuple):
-    """How far two pictures are apart."""
+    """The difference of two pictures."""
 
     flip: float
     delta_e: float
@@ -80,7 +80,7 @@ class Result:
         return self
 
     def __exit__(self, kind: object, *_: object) -> None:
-        """After an error or Ctrl-C the page says so."""
+        """Writes the page once more after an error or Ctrl-C, so that it says so."""
         if kind is not None:
             self._write_page(ended=True)
 

@@ -122,7 +122,7 @@ class _Bar:
             self._bar = tqdm(desc=f"fit {os.path.basename(name)}", unit="it", leave=False)
 
     def show(self, count: int, iteration: int, seconds: float, objective: float) -> None:
-        """How many records there have been, and what the last one says."""
+        """Moves the bar to so many records, and shows the E of the last one."""
         if self._bar is not None and count > self._count:
             self._bar.set_postfix_str(f"E {objective:.4g}", refresh=False)
             self._bar.update(count - self._count)

@@ -65,7 +65,7 @@ class Problem(NamedTuple):
 
 
 def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> list[Brdf]:
-    """So many materials of texels (n, samples, 3), by their values alone; in the end a model is fitted to each.
+    """Finds `count` materials of texels (n, samples, 3), by their values alone; in the end a model is fitted to each.
 
     The first guess of each is the mean of texels that those before explain least. Then, in turn, each becomes what
     fits best what the others and the diffuse terms leave of all texels.

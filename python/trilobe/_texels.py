@@ -88,7 +88,7 @@ class Texels:
         about.save(name)
 
     def __repr__(self) -> str:
-        """How many there are, of how many materials."""
+        """A short description."""
         return f"<trilobe.Texels: {' x '.join(map(str, self.shape))}, {len(self.materials)} materials>"
 
 

@@ -34,7 +34,7 @@ _KINDS = ("trilobe", "trilobe_measured")
 
 
 class Options(NamedTuple):
-    """How it is done; `main` has the defaults."""
+    """Options of a run; `main` has the defaults."""
 
     spp: int
     count_spp: int
@@ -209,7 +209,7 @@ def _directions(material: Material, counts: Any, folder: Path) -> dict[str, Any]
 
 
 def _smoothed(bins: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Between bins, each is read with its neighbours; and both sides of the plane of incidence are the same."""
+    """Spreads reads to neighbouring bins, as interpolation does; both sides of the plane of incidence are the same."""
     bins = (bins + bins[..., ::-1]) / 2
     for axis, ends in ((0, "edge"), (1, "edge"), (2, "wrap")):
         width = [(1, 1) if k == axis else (0, 0) for k in range(3)]

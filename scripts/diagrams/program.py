@@ -63,7 +63,7 @@ def solver() -> Any:
 
 
 def on_disk() -> Any:
-    """Which files lie in the folder of a fit at each time, and what a signal does then."""
+    """The files in the folder of a fit at each time, and the effect of a signal then."""
     figure, axes = plt.subplots(figsize=(9.6, 3.4))
     bare(axes, 19.2, 6.8)
     phases = (("read", 2.4), ("solve", 4.4), ("finish", 2.6), ("score", 2.0), ("draw", 2.4))

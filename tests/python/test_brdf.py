@@ -126,7 +126,7 @@ class Exported:
 
 
 class Elsewhere(Exported):
-    """In the memory of a GPU."""
+    """An array in the memory of a GPU."""
 
     def __dlpack__(self, **options):
         raise BufferError("cannot export a tensor of cuda:0 to the CPU")

@@ -98,7 +98,7 @@ def test_spectral_values_have_the_colours_of_our_reader(mitsuba: Any, files: Pat
 
 
 def chi2_survival(statistic: float, freedom: int) -> float:
-    """How likely a larger statistic is (Wilson and Hilferty 1931)."""
+    """The probability of a larger statistic (Wilson and Hilferty 1931)."""
     mean = 1 - 2 / (9 * freedom)
     z = ((statistic / freedom) ** (1 / 3) - mean) / math.sqrt(2 / (9 * freedom))
     return 0.5 * math.erfc(z / math.sqrt(2))

@@ -52,7 +52,7 @@ class CachedCompiler(unittest.TestCase):
                        env=environment)
 
     def built(self, root, compiler):
-        """How many of the two objects ccache had when all was built."""
+        """The number of the two objects that ccache had when all was built."""
         environment = {**os.environ, "CCACHE_DIR": str(self.folder / "cache")}
         self.configure(root, compiler, environment)
         # Hits of what CMake tried above do not count.

@@ -33,7 +33,7 @@ def run(*arguments: str | Path) -> str:
 
 
 def wait_for(page: Any, expression: str, seconds: float = 60) -> None:
-    """Until it is true. Playwright's wait_for_function is an eval, which pages do not allow."""
+    """Waits until the expression is true. Playwright's wait_for_function is an eval, which pages do not allow."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
         assert time.monotonic() < end, f"not within {seconds} s: {expression}"
