@@ -45,7 +45,7 @@ def test_each_lowers_the_same_e(objective: trilobe.Objective, name: str) -> None
     counted = counting.Counted(objective, start, 0.3, name in methods.LOGARITHMIC)
     try:
         methods.METHODS[name](counted)
-    except Exception:  # some libraries pass on that the time is over
+    except Exception:  # as its library passes on that the time is over
         assert counted.seconds >= counted.budget
     assert counted.trace[0]["objective"] == objective.value(start)
     assert counted.lowest < objective.value(start)
