@@ -144,7 +144,7 @@ foreach(room IN LISTS rooms)
                            "take it from the list\n")
     endif()
   endforeach()
-  # What needs nothing that is left is taken away until nothing changes: the rest is in circles.
+  # Units that need none of those left are removed until nothing changes: the rest is in circles.
   list(REMOVE_DUPLICATES units)
   set(before -1)
   list(LENGTH units left)

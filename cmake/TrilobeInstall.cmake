@@ -1,9 +1,9 @@
-# What `cmake --install` puts where: the libraries with their headers, the program, the licence, and a
-# CMake package, so that find_package(trilobe) gives trilobe::trilobe and trilobe::evaluate.
+# Installs the libraries with their headers, the program, the licence, and a CMake package, so that
+# find_package(trilobe) gives trilobe::trilobe and trilobe::evaluate.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trilobe)
 
-# What only evaluates models is a component of its own, to be installed and found without the rest.
+# The part that only evaluates models is its own component, to be installed and found without the rest.
 install(TARGETS trilobe_evaluate EXPORT trilobe-evaluate COMPONENT evaluate
         FILE_SET HEADERS COMPONENT evaluate)
 install(EXPORT trilobe-evaluate NAMESPACE trilobe:: DESTINATION ${package_dir} COMPONENT evaluate)

@@ -12,8 +12,8 @@
 
 namespace trilobe {
 
-// What main() of a measuring program does: takes the flags off the words, hands the others, of
-// which there must be `count`, to `run`, which returns the exit status, and says errors in a line.
+// The main() of a measuring program: takes the flags off the words, hands the others, of which
+// there must be `count`, to `run`, which returns the exit status, and reports errors in a line.
 // usage: "NAME [--flag=VALUE] WORD ...".
 template <typename Run>
 int ProgramMain(int argc, char** argv, const std::string& usage, int count, const Run& run) {

@@ -12,7 +12,7 @@ fi
 # Paths below the repository do not count, nor does the folder that the compiler runs in.
 CCACHE_BASEDIR=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 export CCACHE_BASEDIR CCACHE_NOHASHDIR=1
-# What ccache asks for where headers are precompiled.
+# ccache requires these where headers are precompiled.
 export CCACHE_PCH_EXTSUM=1 CCACHE_SLOPPINESS=pch_defines,time_macros
 
 # ccache makes paths relative but for this one, of clang's precompiled headers:

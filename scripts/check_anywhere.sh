@@ -13,7 +13,7 @@ copy="$closed/a copy with spaces"
 mkdir "$copy"
 git ls-files -z --cached --others --exclude-standard | xargs -0 cp --parents --no-dereference --target-directory="$copy"
 
-# What was compiled before is compiled from its text all the same.
+# ccache keeps its folder, so that earlier compilations of the same text are found.
 if command -v ccache >/dev/null; then
   CCACHE_DIR=$(ccache --get-config cache_dir)
   export CCACHE_DIR

@@ -20,13 +20,13 @@ cmake --build "$consumer/build"
 # d + s / (cos theta_i cos theta_o) with cosines of 0.8 and 1.
 diff <("$consumer/build/consumer" tests/evaluate_only/model.json) <(echo "0.725 0.825 0.925")
 
-# Nor is a header of theirs read, which would leave no trace in the program.
+# Headers of other projects must not be read either, which would leave no trace in the program.
 if others=$(ninja -C "$build_dir" -t deps | grep -E '/(nlohmann|eigen3|glog|gflags|gsl|ceres|stb)/'); then
   echo "the library that only evaluates reads headers of other projects: $others" >&2
   exit 1
 fi
 
-# What the program loads comes with every C++ compiler.
+# The program may load only libraries that come with every C++ compiler.
 needed=$(readelf --dynamic "$consumer/build/consumer" | grep -oP '\(NEEDED\).*\[\K[^]]+')
 if others=$(grep -vE '^(libstdc\+\+|libm|libgcc_s|libc|ld-linux[^.]*)\.so' <<<"$needed"); then
   echo "the library that only evaluates needs more than the standard library: $others" >&2

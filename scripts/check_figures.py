@@ -49,18 +49,18 @@ WORDS = ("zero one two three four five six seven eight nine ten eleven twelve th
          "seventeen eighteen nineteen twenty").split()
 NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
-# What decides how a fit of a table comes out. Not how its model is drawn from by a renderer, what is done to a
-# measurement by flags, what is said about it, and how samples on no grid are read.
+# Sources that decide how a fit of a table comes out. Left out are sampling by renderers, flags that change a
+# measurement, reports on it, and readers of samples on no grid.
 FITS = ["src/model", "src/solvers", "src/fit",
         *(f":(exclude)src/model/{name}" for name in
           ("corruption", "evaluate/*bsdf*", "evaluate/half_vector_table*", "evaluate/cover_spikes*",
            "measurement/*symptom*", "measurement/unmeasured*", "measurement/measurement.cc")),
         *(f":(exclude)src/fit/{name}" for name in
           ("guess_error*", "scene", "reports", "study", "export", "open_pbr"))]
-# What comes after the solver, which raw fits do without, and these programs.
+# Steps after the solver, which raw fits do without, and so do these programs.
 FINISH = [f":(exclude)src/fit/{name}" for name in ("finish", "finish_fit.cc", "held_out*", "prune")]
 UNFINISHED = ("awls_equality", "random_starts", "stiff")
-# What these experiments depend on as well.
+# Further sources that these experiments depend on.
 ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
         "robustness": ["src/model/measurement", "src/model/corruption"], "scene": ["src/fit/scene"], "reads": ["src/fit/scene"]}
@@ -120,7 +120,7 @@ def commands(source: str, page: str, start: int, end: int) -> str:
 
 
 def figures(page: pathlib.Path) -> Iterator[Figure]:
-    """Those that a page binds; Wrong if one does not stand below its comment."""
+    """The figures that a page binds; Wrong if one does not stand below its comment."""
     text = page.read_text()
     for comment in COMMENT.finditer(text):
         block = BLOCK.match(text, comment.end())
@@ -188,7 +188,7 @@ def printed(figure: Figure, done: page_commands.Done) -> float:
 
 
 def differs(figure: Figure, value: float, off: float) -> str:
-    """What is wrong with a figure of which the value may be `off` by so many of its last digits."""
+    """Says how a figure is wrong, if its value may be `off` by so many of its last digits; empty if it is right."""
     given, digit = number(figure.text)
     if abs(value - given) <= (off + 1e-6) * digit:
         return ""
@@ -198,7 +198,7 @@ def differs(figure: Figure, value: float, off: float) -> str:
 
 
 def of_table(figure: Figure) -> str:
-    """What is wrong with a figure of a table."""
+    """Says how a figure of a table is wrong; empty if it is right."""
     try:
         columns = table(figure.page.parent / figure.source)
         value = float(eval(figure.where, {"__builtins__": {}}, {**columns, **FUNCTIONS}))  # noqa: S307
@@ -208,7 +208,7 @@ def of_table(figure: Figure) -> str:
 
 
 def of_command(bound: list[Figure], root: pathlib.Path, data: Optional[pathlib.Path]) -> Iterator[str]:
-    """What is wrong with figures of one command."""
+    """Says how figures of one command are wrong."""
     command = bound[0].source
     with page_commands.run(command, root, data) as done:
         if done.absent:
@@ -228,7 +228,7 @@ def of_command(bound: list[Figure], root: pathlib.Path, data: Optional[pathlib.P
 
 
 def git(root: pathlib.Path, *arguments: str) -> Optional[str]:
-    """What git prints; None where it fails."""
+    """The output of git; None where it fails."""
     done = subprocess.run(["git", *arguments], cwd=root, capture_output=True, text=True, check=False)
     return done.stdout.strip() if done.returncode == 0 else None
 
@@ -294,7 +294,7 @@ def note(page: pathlib.Path, bound: list[Figure], root: pathlib.Path) -> str:
 
 
 def set_note(page: pathlib.Path, line: str, write: bool) -> str:
-    """What is wrong with the note of a page, which is mended if `write`."""
+    """Says how the note of a page is wrong; mends it instead if `write`."""
     text = page.read_text()
     bare = NOTE.sub("", text, 1)
     title, between, rest = bare.partition("\n\n")

@@ -26,7 +26,7 @@ for page in "${pages[@]}"; do
     path=${link%%#*}
     target=$page
     [[ -z $path ]] || target=$(dirname "$page")/$path
-    # What an experiment's full run is to show, while none has been published.
+    # Results of an experiment's full run may be missing while none has been published.
     if [[ $page == experiments/* && $path == results/* && ! -d ${target%%/results/*}/results ]]; then
       continue
     fi

@@ -11,7 +11,7 @@ if ! command -v chromium >/dev/null; then
   exit 0
 fi
 venv=build/browser
-# Of nicegui, only its copy of three.js 0.168 is used.
+# nicegui is needed for its copy of three.js 0.168 alone.
 if ! "$venv/bin/python" -c 'import numpy, PIL, playwright, pytest' 2>/dev/null || [[ ! -e $venv/three ]]; then
   export PIP_RETRIES=1 PIP_DEFAULT_TIMEOUT=15 PIP_DISABLE_PIP_VERSION_CHECK=1
   if ! { python3 -m venv "$venv" && "$venv/bin/pip" install --quiet numpy pillow playwright pytest ruff &&

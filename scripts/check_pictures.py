@@ -33,14 +33,14 @@ VISIBLE, SHARE = 32, 1e-5
 
 
 class Made(NamedTuple):
-    """How a picture is made, and where that is said."""
+    """The command that makes a picture, and the page that has it."""
     command: str
     nightly: bool
     page: str
 
 
 def pictures(root: pathlib.Path) -> tuple[dict[pathlib.Path, Made], list[str]]:
-    """How each picture of the pages is made, and what is wrong with what they say."""
+    """The commands of all pictures of the pages, and errors in what pages say of them."""
     shown: dict[pathlib.Path, str] = {}
     made: dict[pathlib.Path, Made] = {}
     wrong: list[str] = []
@@ -67,7 +67,7 @@ def pictures(root: pathlib.Path) -> tuple[dict[pathlib.Path, Made], list[str]]:
 
 
 def difference(one: pathlib.Path, other: pathlib.Path) -> str:
-    """What differs visibly between two pictures; empty if nothing does."""
+    """The visible difference between two pictures, in words; empty if there is none."""
     pixels = [np.asarray(Image.open(path).convert("RGB")).astype(int) for path in (one, other)]
     if pixels[0].shape != pixels[1].shape:
         return " by ".join(map(str, pixels[1].shape[1::-1])) + " pixels instead of " + \

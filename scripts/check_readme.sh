@@ -29,7 +29,7 @@ shorter() {
     sed -E 's/--max_iterations=[0-9]+/--max_iterations=2/'
   fi
 }
-# What is there from another time, or of an earlier version, may not be the program's to overwrite.
+# Results of another time, or of an earlier version, may not be the program's to overwrite.
 commands README.md docs/commands.md docs/library.md docs/scene.md | grep -oP -- '--out=\Kout/[^ ]+' | xargs rm -rf
 commands README.md docs/commands.md docs/library.md | shorter | bash -euo pipefail -x
 commands docs/scene.md | bash -euo pipefail -x

@@ -56,7 +56,7 @@ chmod 755 "$root"/bin/*
     [[ $1 != -n ]] || shift
     "$@"
   }
-  # What a first run leaves behind, killed with its dpkg.
+  # A first run that is killed with its dpkg leaves this state.
   apt-get install >"$root/first.log" 2>&1 && die "dpkg was not killed"
   is_installed trilobe-setup-check && die "the package is installed, and nothing is left to do"
   : >"$root/calls"

@@ -187,7 +187,7 @@ def check_real_formats(wanted):
 
 
 def compile_touched(tree):
-    """Without code: the sources of the touched files, as the tidy preset compiles them."""
+    """Checks the touched files without generating code, as the tidy preset compiles their sources."""
     build = tree.folder / "build/tidy"
     subprocess.run(["cmake", "--preset", "tidy", "-B", build], cwd=tree.folder, check=True, stdout=subprocess.DEVNULL)
     commands = {entry["file"]: entry for entry in json.loads((build / "compile_commands.json").read_text())}

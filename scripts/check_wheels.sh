@@ -25,7 +25,7 @@ for place in "${standard_library[@]}"; do
   [[ -z $place ]] || tar -C / --exclude={dist-packages,site-packages,test,'config-*'} -c "${place#/}" | tar -C "$root" -x
 done
 copy "${programs[@]}" /etc/ld.so.conf /etc/ld.so.conf.d
-# What these load; all of glibc, and of C++ what a manylinux wheel takes from the system.
+# Libraries that these load; all of glibc, and of C++ those that a manylinux wheel takes from the system.
 libc=$(ldconfig -p | awk '$1 == "libc.so.6" && !n++ { print $NF }')
 cxx=$(ldconfig -p | awk '$1 == "libstdc++.so.6" && !n++ { print $NF }')
 mapfile -t libraries < <({
@@ -90,7 +90,7 @@ imported=$(bare /all/bin/python /import.py)
 echo "import trilobe: $imported"
 at_most "${imported%% *}" 0.2 "import trilobe"
 bare /all/bin/python /example.py | sed "s/^/README.md's example: /"
-# To the bit what the program fits that was built for the wheel.
+# The wheel's program and the one that was built for it have the same fits, to the bit.
 fit=(fit synth:copper@24x24x48 --noplots)
 bare /all/bin/trilobe "${fit[@]}" --out=/tmp/copper 2>"$root/notes" | grep ^verdict
 "$folder/build/trilobe/bin/trilobe" "${fit[@]}" --out="$root/tmp/here" >"$root/report" 2>&1

@@ -20,7 +20,7 @@ DRAWN = {
 
 
 def main() -> None:
-    """Those that are named, or all."""
+    """Draws the diagrams that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help=", ".join(DRAWN))
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("."), help="a folder")

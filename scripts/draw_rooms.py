@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-WIDTH, HEIGHT, GAP_X, GAP_Y, MARGIN = 400, 40, 60, 22, 10  # of a box, between boxes, around all
+WIDTH, HEIGHT, GAP_X, GAP_Y, MARGIN = 400, 40, 60, 22, 10  # sizes of a box, between boxes, around all
 FRAME, TITLE = 14, 24  # around the rooms of a group, and above them
 
 

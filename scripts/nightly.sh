@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# What takes too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests and those of
-# the program under the address and undefined-behaviour sanitizers, the thread sanitizer, all tests as other processors
-# and another compiler round, a newcomer's first hour in an inconvenient place, some hundred faults, and long fuzzing.
+# Checks that take too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests and
+# those of the program under the address and undefined-behaviour sanitizers, the thread sanitizer, all tests as other
+# processors and another compiler round, a newcomer's first hour in an inconvenient place, some hundred faults, and long
+# fuzzing.
 #   scripts/nightly.sh [TRIALS [RUNS [DATA]]]      faults to try (400), executions of each fuzzer (10000000), a
 #                                                  folder with the measured files that pages name
 set -euo pipefail
@@ -13,7 +14,7 @@ setup_packages run check ci
 
 step "Checking all of the code with clang-tidy"
 configure tidy
-# Whatever .ci/run has seen.
+# A fresh cache, so that files count which .ci/run has seen already.
 forgetful=$(mktemp -d)
 XDG_CACHE_HOME=$forgetful quietly tidy scripts/tidy.py build/tidy ""
 rm -rf "$forgetful"

@@ -15,7 +15,7 @@ PROGRAMS = ["build/release/bin", "experiments/renderer", "python/examples", "scr
 
 
 class Done(NamedTuple):
-    """What a command left behind."""
+    """The results of a command."""
 
     folder: pathlib.Path
     succeeded: bool

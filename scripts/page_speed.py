@@ -52,7 +52,7 @@ KINDS = ("at rest", "while it moves", "not shown", "of one colour")
 
 
 def processor_seconds(mark: str) -> float:
-    """Of all processes that were started with this in their command line."""
+    """Processor seconds of all processes that were started with this in their command line."""
     ticks = 0
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -95,7 +95,7 @@ def main() -> int:
     with opened(pathlib.Path(sys.argv[1]).resolve(), "window.trilobe?.renderer?.shown") as (page, mark):
         page.wait_for_function("!trilobe.renderer.pending", timeout=120000)
         for kind in KINDS:
-            page.evaluate(FRAME, kind)  # what compiles at first does not count
+            page.evaluate(FRAME, kind)  # the first call compiles, and does not count
             processor, clock = processor_seconds(mark), time.time()
             page.evaluate(FRAME, kind)
             print(f"a frame {kind} in {1000 * (time.time() - clock) / FRAMES:.0f} ms, "

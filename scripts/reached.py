@@ -26,7 +26,7 @@ CONCERNS_ALL = re.compile(
     r"(^|/)(\.clang-tidy|dependencies\.txt)$|^scripts/(tidy\.py|reached\.py)$")
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
-# What lands together is taken to have been written within so many; scripts/nightly.sh checks all.
+# Commits that land together are taken to have been written within so many hours; scripts/nightly.sh checks all.
 LANDING_HOURS = 3
 INCLUDE = re.compile(rb'^#include "([^"]+)"', re.MULTILINE)
 ANY_INCLUDE = re.compile(rb"^#include (\S+)", re.MULTILINE)
@@ -38,8 +38,8 @@ def git(*arguments):
 
 
 def compiled(root, build_dir):
-    """How each source is compiled: its path below `root`, and with what, wherever `root` lies.
-    Sources that the build folder makes come with their text."""
+    """Compilations by source: its path below `root`, and with what it is compiled, wherever `root` lies. Sources that
+    the build folder makes come with their text."""
     found = {}
     for entry in json.loads((build_dir / "compile_commands.json").read_text()):
         source = pathlib.Path(entry["directory"], entry["file"]).resolve()
@@ -121,7 +121,7 @@ def included_by(file):
 
 
 def all_included_by(file, known):
-    """Those that it includes, however indirectly."""
+    """The headers that it includes, however indirectly."""
     if file not in known:
         known[file] = set()  # for a file that includes itself
         for included in included_by(file):
@@ -130,7 +130,7 @@ def all_included_by(file, known):
 
 
 def to_check(sources, changed, commit):
-    """Those of the sources that are to be checked for the changes since a commit."""
+    """The sources that are to be checked for the changes since a commit."""
     known = {}
     included = {source: all_included_by(source, known) for source in sources if source.is_file()}
     checked = {source for source in included if source in changed}

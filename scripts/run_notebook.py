@@ -19,7 +19,7 @@ from matplotlib import pyplot  # noqa: E402
 
 
 def run_cell(source, names):
-    """What a cell prints and draws, as a notebook has it; the last expression is shown."""
+    """Runs a cell; returns its prints and pictures as a notebook has them. The last expression is shown."""
     tree = ast.parse(source)
     last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
     printed = io.StringIO()

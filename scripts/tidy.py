@@ -50,7 +50,7 @@ def digest(path):
 
 @functools.cache
 def tool():
-    """What checks: clang-tidy, whatever processor it runs on, and this script."""
+    """Identity of the checker: clang-tidy, whatever processor it runs on, and this script."""
     version = output_of(["clang-tidy", "--version"]).decode()
     return re.sub(r".*Host CPU.*\n", "", version) + digest(pathlib.Path(__file__).resolve())
 
@@ -82,11 +82,11 @@ def check(entry, build_dir, end):
     try:
         known = CACHE / key_of(entry)
     except subprocess.CalledProcessError:
-        known = None  # what it includes is not there: clang-tidy says so
+        known = None  # a header is missing: clang-tidy says so
     if known and known.exists():
         known.touch()
         return True, False
-    # What it prints on standard error are counts of what it does not report.
+    # Its standard error has counts of diagnostics that it does not report.
     done = subprocess.run(["clang-tidy", "--quiet", "-p", str(build_dir), entry["file"]],
                           stderr=subprocess.DEVNULL)
     if known and done.returncode == 0:

@@ -24,7 +24,7 @@ a Debian package is that of this version at https://snapshot.debian.org.
 
 
 def output_of(*command):
-    """What a command prints."""
+    """The output of a command."""
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
@@ -57,7 +57,7 @@ def main(wheel, compiled_in):
         nanobind = importlib.metadata.distribution("nanobind")
         for name, source in (("nanobind", "LICENSE"), ("robin-map", "robin_map.h")):
             (file,) = (file for file in nanobind.files if file.name == source)
-            (licences / name).write_text(file.read_text().partition("*/")[0])  # of code, its first comment
+            (licences / name).write_text(file.read_text().partition("*/")[0])  # code: its first comment
         contents = [output_of("dpkg-query", "--show", "--showformat=${Package} ${Version}", name) for name in packages]
         contents.append(f"nanobind {nanobind.version}, with robin-map, of PyPI")
         (licences / "CONTENTS").write_text(HEAD + "\n".join(contents) + "\n")

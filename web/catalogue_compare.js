@@ -19,7 +19,7 @@ function theRenderer() {
   return drawer;
 }
 
-// Until nothing is left to draw, or `stale` is true; `draw` is called with each finer picture.
+// Draws until nothing is left, or `stale` is true; `draw` is called with each finer picture.
 function finish(renderer, stale, draw) {
   return new Promise(done => {
     const step = () => {

@@ -67,7 +67,7 @@ export class LineChart {
     return element('div', {className: 'chart-tools'}, ...tools);
   }
 
-  // ---- What is seen ----
+  // ---- Drawing ----
 
   // series: [{label, color, points: [[x, y]...], unknown: a set of indices that no data told, width, dash, dots, key: in the
   // legend, if not the label; null for none}];
@@ -234,7 +234,7 @@ export class LineChart {
     this.svg.append(group);
     this.values.replaceChildren(element('b', {textContent: `${this.angle} ${+x.toFixed(1)}${this.unit}`}),
                                 ...read.map(({label, color, value}) => element('span', {}, swatch(color), `${label} ${short(value)}`)));
-    // Beside the line, on the side with more room.
+    // The values stand beside the line, on the side with more room.
     const box = this.svg.getBoundingClientRect(), outer = this.figure.getBoundingClientRect();
     const left = at < this.width / 2;
     Object.assign(this.values.style, {top: `${box.top - outer.top + TOP}px`, left: left ? `${box.left - outer.left + at + 10}px` : 'auto',
@@ -286,7 +286,7 @@ export class LineChart {
     return [['curve', ...this.axes, 'no_data'].join(','), ...rows].join('\n') + '\n';
   }
 
-  // By itself: with its ground, its title and its legend.
+  // The chart as a file of its own, with its ground, its title and its legend.
   svgText() {
     const copy = this.svg.cloneNode(true), {series} = this.drawn, rows = Math.ceil(series.length / 3), below = 16 * rows + 26;
     copy.querySelector('.cursor')?.remove();

@@ -1,4 +1,4 @@
-// What the model is made of: curves of D, F and G, by lobe and channel.
+// Charts of the model's parts: curves of D, F and G, by lobe and channel.
 
 import {DEGREES, byId, element, pageColor, short} from './dom.js';
 import {drawLight} from './light_charts.js';
@@ -21,7 +21,8 @@ const charts = {
 
 // ---- Choices -----------------------------------------------------------------------------------------------------
 
-// Of the model: a table for each lobe and channel has too many curves for one chart, so that it begins with means.
+// Fills the choices for a model. A table for each lobe and channel has too many curves for one chart, so that it begins
+// with means.
 export function makeChartChoices() {
   const {base} = page, many = FACTORS.some(f => base.sharing[f].per_lobe && base.sharing[f].per_channel) && base.lobes > 1;
   const fill = (id, options) => byId(id).replaceChildren(...options.map(([value, textContent]) => element('option', {value, textContent})));
@@ -70,7 +71,7 @@ function curvesOf(factor) {
   });
 }
 
-// Where a few values are far above the others, nothing else would be seen.
+// Whether a few values are so far above the others that nothing else would be seen.
 function isSpread(series) {
   const values = series.flatMap(s => s.points.map(p => p[1])).sort((a, b) => a - b);
   return values.at(-1) > 100 * values[values.length >> 1];

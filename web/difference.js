@@ -1,10 +1,10 @@
-// Where a model is too dark or too bright beside its measurement, over (theta_h, theta_d).
+// Maps of where a model is too dark or too bright beside its measurement, over (theta_h, theta_d).
 
 import {luminance} from './judge.js';
 import {anglesOf} from './model.js';
 import {directionsOf} from './measured.js';
 
-const MOST = Math.log(100);  // what is black counts as so much too dark
+const MOST = Math.log(100);  // bound of log ratios, that of black
 const logRatio = (fitted, measured) => Math.min(Math.max(Math.log(fitted / measured), -MOST), MOST);
 
 const WITHIN = 10;  // degrees of phi_d, where nothing has bins of it
@@ -34,7 +34,7 @@ export function differenceMap(measured, evaluate, {size = 45, phiD = null, like 
     weights[bin] += 1;
     absolute[bin] += Math.abs(log);
   };
-  // Of another model, at azimuths that spread, as it may be anisotropic.
+  // Adds a comparison with another model, at azimuths that spread by the golden angle, as it may be anisotropic.
   const addTurned = (wi, wo, p, bin, solidAngle) => {
     const [i, o] = [wi, wo].map(w => turnedBy(w, p * Math.PI * (3 - Math.sqrt(5))));
     add(i, o, measured.rho(i, o), bin, solidAngle);
@@ -96,7 +96,7 @@ function hardlySeen(light, density, pairs) {
   return found;
 }
 
-// Of samples: {points: [{theta_h, theta_d, log}], typical, bias}.
+// Differences at samples: {points: [{theta_h, theta_d, log}], typical, bias}.
 export function differencePoints({samples}, evaluate, phiD = null) {
   const points = [];
   for (const {wi, wo, rho} of samples) {

@@ -25,7 +25,7 @@ export function short(x) {
   if (x === 0) return '0';
   return Math.abs(x) >= 1e4 || Math.abs(x) < 1e-3 ? x.toExponential(2) : String(+x.toPrecision(3));
 }
-export const shortDeltaE = x => String(+x.toPrecision(2));  // as in the report's verdict
+export const shortDeltaE = x => String(+x.toPrecision(2));  // digits of the report's verdict
 export const shortAngle = degrees => `${+degrees.toFixed(1)}°`;
 export const grouped = n => n.toLocaleString('en');
 export const signed = x => `${x < 0 ? '−' : '+'}${short(Math.abs(x))}`;

@@ -11,7 +11,7 @@ export function isEdited(edit, model) {
   return JSON.stringify(edit) !== JSON.stringify(noEdit(model));
 }
 
-// Of the form above, whatever a link says.
+// Returns an edit of the form above, whatever a link says: values are clamped to their ranges, invalid ones replaced.
 export function checkedEdit(edit, model) {
   const clean = noEdit(model);
   const between = (x, low, high, other) => (Number.isFinite(x) ? Math.min(Math.max(x, low), high) : other);
@@ -63,7 +63,7 @@ function stretched(table, axis, rough) {
   return out;
 }
 
-// With `all`, lobes that are off count, too: as the model is saved.
+// Applies an edit to a model. With `all`, lobes that are off count, too: the model is saved so.
 export function editedModel(base, edit, all = false) {
   const model = copyModel(base);
   if (edit.diffuse) model.d = linearOf(edit.diffuse).map(x => x / Math.PI);

@@ -15,7 +15,7 @@ function smoothStep(from, to, x) {
   return t * t * (3 - 2 * t);
 }
 
-// Of longitudes, the nearest way around.
+// Difference of longitudes [degrees], the nearest way around.
 function around(longitude, middle) {
   const x = longitude - middle;
   return x - 360 * Math.round(x / 360);

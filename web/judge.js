@@ -12,7 +12,7 @@ const RULE = [
   ['plain', 'plainly visible', Infinity, Infinity],
 ];
 
-// Of {mean, at95}: {name, words}.
+// Visibility {name, words} of a difference {mean, at95}.
 export function visibilityOf({mean, at95}) {
   const [name, words] = RULE.find(([, , most, most95]) => mean <= most && at95 <= most95);
   return {name, words};
@@ -38,7 +38,7 @@ export function summaryOf(differences) {
   return {mean: sorted.reduce((x, y) => x + y, 0) / sorted.length, at95: sorted[Math.min(Math.floor(0.95 * sorted.length), sorted.length - 1)]};
 }
 
-// Of two pictures of RGBA light, where most of the light of both is of measured directions.
+// Compares two pictures of RGBA light, where most of the light of both is of measured directions.
 export function compareImages(fitted, measured, exposure) {
   const found = [];
   for (let k = 0; k < fitted.length; k += 4) {
@@ -48,8 +48,8 @@ export function compareImages(fitted, measured, exposure) {
   return summaryOf(found);
 }
 
-// Of samples, each a patch of the brightness rho cos theta_i. The exposure makes the mean of their clipped luminances
-// MEAN_LUMINANCE. Null for a black measurement.
+// Compares samples, each as a patch of the brightness rho cos theta_i. The exposure makes the mean of their clipped
+// luminances MEAN_LUMINANCE. Null for a black measurement.
 export function compareSamples(samples, evaluate) {
   const lights = samples.map(({wi, rho}) => rho.map(x => x * wi[2])), luminances = lights.map(luminance);
   if (!luminances.some(l => l > 0)) return null;

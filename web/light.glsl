@@ -1,6 +1,6 @@
-// What the eye (+z, far away) sees of a surface: the sum over a part of the half vectors of its normal, each
-// with the light that mirrors would send it from there (src/model/appearance/render_environment.cc), or the
-// light of one lamp (LAMP 1). `material` is the BRDF, and 1 where its directions were measured.
+// Light that the eye (+z, far away) sees of a surface: the sum over a part of the half vectors of its normal, each with
+// the light that mirrors would send it from there (src/model/appearance/render_environment.cc), or the light of one
+// lamp (LAMP 1). `material` is the BRDF, and 1 where its directions were measured.
 uniform highp sampler2D normals, tangents, previous, cells;
 uniform highp sampler2D mirrored;
 uniform int from, to;
@@ -10,7 +10,7 @@ layout(location = 0) out vec4 sum;
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
-// By the smallest turn that takes z to the normal.
+// Turns v by the smallest turn that takes z to the normal.
 vec3 turned(vec3 n, vec3 v) {
   float along = (n.x * v.x + n.y * v.y) / (1.0 + n.z);
   return vec3(v.xy - n.xy * along + n.xy * v.z, n.z * v.z - n.x * v.x - n.y * v.y);

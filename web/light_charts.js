@@ -1,4 +1,4 @@
-// What the material does with light from one angle: where it goes in the plane of incidence, and how much in all.
+// Charts of light from one angle: where the material sends it in the plane of incidence, and how much in all.
 
 import {DEGREES, byId, pageColor, short} from './dom.js';
 import {hasMeasured, hasSamples, lobeColor, maxAngle, page, referenceWord, state} from './page_state.js';

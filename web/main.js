@@ -203,7 +203,7 @@ async function begin() {
   requestAnimationFrame(frame);
 }
 
-// For tests, and for those who look.
+// Objects for tests and for the curious.
 window.trilobe = {state, contents, page, get renderer() { return page.renderer; }, get model() { return page.model; },
                   directionsOf, isNearlyDiffuse, visibilityOf};
 begin().catch(error => {

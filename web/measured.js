@@ -48,7 +48,8 @@ export function bytesOf(base64) {
   return bytes;
 }
 
-// Where nothing is valid, the value of the nearest that is: along phi_d, which wraps around, else theta_d, else theta_h.
+// Fills invalid bins by the value of the nearest valid one: along phi_d, which wraps around, else theta_d, else
+// theta_h.
 function fillFromNearest(rgb, valid, [nh, nd, np]) {
   const known = Uint8Array.from(valid), longest = Math.max(nh, nd, np);
   const from = new Int32Array(longest), distance = new Int32Array(longest);
@@ -80,7 +81,7 @@ function fillFromNearest(rgb, valid, [nh, nd, np]) {
     for (let p = 0; p < np && !missing; ++p) missing = !known[i * np + p];
     if (missing) fill(i * np, np, 1, true);
   }
-  // What is known by now is known for all phi_d of a row.
+  // By now a row is known for all phi_d or for none.
   const rows = Array.from({length: nh * nd}, (_, i) => known[i * np]);
   for (let h = 0; h < nh; ++h) {
     if (rows.slice(h * nd, (h + 1) * nd).every(Boolean)) continue;

@@ -1,6 +1,6 @@
 // The environment as mirrors with the normals of a disc send it to the eye (src/model/appearance/mirrored_environment.cc).
 uniform highp sampler2D environment;  // latitude and longitude
-uniform float turn;                   // of the environment about y, in parts of a turn
+uniform float turn;                   // rotation of the environment about y, in turns
 layout(location = 0) out vec4 seen;
 
 vec3 reflected(vec2 p) {

@@ -180,7 +180,7 @@ export function formatModel(model, note) {
   return JSON.stringify(file, null, 1).replace(/\[\s+([-\d.e+,\s]+?)\s+\]/g, (_, list) => `[${list.replace(/\s+/g, '')}]`) + '\n';
 }
 
-// Where a number of bins is read: [lower, upper, part].
+// Place at which tables of so many bins are read: [lower, upper, part].
 export function linearPlace(coordinate, bins) {
   const x = Math.min(Math.max(coordinate - 0.5, 0), bins - 1);
   const lower = Math.min(Math.floor(x), bins - 2);

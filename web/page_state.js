@@ -1,4 +1,4 @@
-// What the page shows: its files, its model as it is edited, its settings, and the link that holds these.
+// State of the page: its files, its model as it is edited, its settings, and the link that holds these.
 
 import {byId, tell} from './dom.js';
 import {isEdited} from './edit.js';
@@ -42,7 +42,7 @@ export const lobesText = model => `${model.lobes} ${model.lobes === 1 ? 'lobe' :
 export const lobeName = m => `lobe ${m + 1}${isNearlyDiffuse(page.base, m) ? ' (nearly diffuse)' : ''}`;
 export const lobeColor = m => LOBE_COLORS[m % LOBE_COLORS.length];
 
-// What was computed of the model and what is beside it.
+// Drops results that depend on the model and on what is beside it.
 export function forget() {
   page.heat = page.heatAt = page.seen = page.albedo = null;
   page.chartsStale = true;
@@ -58,18 +58,18 @@ export function maxAngle() {
 
 const droppedFiles = () => [page.modelFile, page.measuredFile].filter(file => file?.dropped).map(file => file.name);
 
-// What the page says of the fit counts for the two files that it came with.
+// Whether the page still has the two files that it came with, for which its words on the fit hold.
 export const asItCame = () => droppedFiles().length === 0;
 
-// Of all that is shown.
+// Names of all that is shown.
 export function heading() {
   const {modelFile, measuredFile} = page;
   return measuredFile && !asItCame() ? `${modelFile.name} beside ${measuredFile.name}` : modelFile.name;
 }
-// What is beside the model, for a title and within a sentence.
+// Name of the measurement or model beside, for a title and within a sentence.
 export const referenceTitle = () => (isModelBeside() ? page.measuredFile.name : 'Measured');
 export const referenceWord = () => (isModelBeside() ? 'beside' : 'measured');
-// Of the model, for files.
+// Name of the model for files, without an extension.
 export function modelFileName() {
   const name = page.modelFile.name.replace(/\.json$/i, '').replace(/[^\w.-]+/g, '_');
   return edited() ? `${name}_edited` : name;

@@ -47,7 +47,7 @@ function showCaptions() {
   byId('canvas').ariaLabel = pictureLabel();
 }
 
-// Where in which panel: from -1 to 1, y up.
+// Panel of an event, and the place in it: from -1 to 1, y up.
 export function placeOf(event) {
   const box = byId('canvas').getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
   for (const panel of panels) {
@@ -57,7 +57,7 @@ export function placeOf(event) {
   return null;
 }
 
-// ---- What changes it ---------------------------------------------------------------------------------------------
+// ---- Changes of the picture --------------------------------------------------------------------------------------
 
 function restart() {
   page.renderer.moving = page.dragging !== null || byId('turntable').checked;

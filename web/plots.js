@@ -1,6 +1,6 @@
 // Small charts on canvases, in the colours of the page.
 
-// Those of factors.png (src/io/pictures/gnuplot.h).
+// Same colours as in factors.png (src/io/pictures/gnuplot.h).
 export const LOBE_COLORS = ['#E69F00', '#56B4E9', '#CC79A7', '#8E6BBF', '#8C6D31', '#23939C', '#7D7D7D', '#A8A800'];
 export const CHANNEL_COLORS = ['#D55E00', '#009E73', '#0072B2'];
 export const CHANNEL_NAMES = ['red', 'green', 'blue'];
@@ -84,7 +84,7 @@ export function drawHeat(canvas, map, mark, dark) {
   }
 }
 
-// What the colours of a map stand for, with these percents.
+// Draws the scale of a map's colours, with these percents.
 export function drawScale(canvas, percents, dark) {
   const made = prepare(canvas);
   if (!made) return;
@@ -134,7 +134,7 @@ function drawPoints(context, points, place, style, dark) {
   }
 }
 
-// What goes where, in the plane of incidence: [{values: [[theta_o, value]...], color, dots}], theta_o from -90 to 90 [deg],
+// Draws light in the plane of incidence: [{values: [[theta_o, value]...], color, dots}], theta_o from -90 to 90 [deg],
 // light from the left. Radii are cube roots. Hatched where `known` of theta_o is false.
 export function drawPolar(canvas, curves, thetaI, known) {
   const made = prepare(canvas);

@@ -1,4 +1,4 @@
-// What the pointer and the keys do on the picture.
+// Actions of the pointer and the keys on the picture.
 
 import {byId, tell} from './dom.js';
 import {page, state} from './page_state.js';

@@ -24,13 +24,13 @@ export function lookAt(at) {
   showNumbers();
 }
 
-// Again, after the light, the object or a file has changed.
+// Repeats the readout after the light, the object or a file has changed.
 export function lookAgain() {
   if (page.point) lookAt(page.point.at);
   else showNumbers();
 }
 
-// What was measured there: {title, rho, at}, rho null if nothing was, `at` the directions of the nearest sample.
+// Measured value there: {title, rho, at}, rho null if nothing was measured, `at` the directions of the nearest sample.
 function measuredAt(point) {
   if (!hasSamples()) return {title: `ρ ${referenceWord()}`, rho: point && page.measured.rho(point.wi, point.wo)};
   const nearest = point && nearestSample(page.measured, point.wi, point.wo);
@@ -49,7 +49,7 @@ function headOf(title) {
 // [title, values]: three of them, or one across.
 function showRows(rows) {
   const body = byId('numbers'), titles = rows.map(([title]) => title).join();
-  if (body.dataset.titles !== titles) {  // else a word that is explained stays so
+  if (body.dataset.titles !== titles) {  // rows stay if they can, and so do explanations
     body.dataset.titles = titles;
     body.replaceChildren(...rows.map(([title]) => element('tr', {}, headOf(title))));
   }

@@ -11,7 +11,7 @@ const NO_MODEL = '#define TB_LOBES 0\nuniform sampler2D trilobe_tables;\nconst v
 const FULL_SCREEN = 'void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }';
 const MODES = {fitted: 0, measured: 1, wipe: 2, difference: 3};
 const COARSEST = 16;  // pixels across of the first picture, or up to twice as many
-const JUDGED = 96;    // of the picture that tells how far apart the materials are, whatever the window
+const JUDGED = 96;    // pixels across of the picture by which materials are judged, whatever the window
 const FRAME_MS = 30;
 const MOVING_MS = 18;  // for a material under a lamp that moves; about half the pixels across where all take longer
 
@@ -37,7 +37,7 @@ export class Renderer {
     this.environmentTurn = 0;
     this.object = 'sphere';
     this.lamp = null;
-    this.leastCosine = 0;  // of the largest angle to the eye that was measured
+    this.leastCosine = 0;  // cosine of the largest angle to the eye that was measured
     this.shown = null;
     this.pending = true;
     this.onImage = () => {};
@@ -186,7 +186,7 @@ export class Renderer {
     this.restart();
   }
 
-  // Of the object's picture, in pixels.
+  // Sets the width of the object's picture, in pixels.
   setSize(size) {
     if (size === this.size) return;
     const {gl} = this;
@@ -337,7 +337,7 @@ export class Renderer {
       this.addLight(level, number, progress.cell, progress.cell + count, lamp);
       this.sync(level, number);
       const seconds = (performance.now() - start) / 1000, cost = level.size ** 2 * 0.7 * count;
-      // What compiles first says nothing about the rate.
+      // The first call compiles, and says nothing about the rate.
       if (this.measuredRate && cost > 2e4) this.rate = Math.min(Math.max(0.5 * this.rate + (0.5 * cost) / Math.max(seconds, 1e-4), 2e5), 1e10);
       this.measuredRate = true;
       progress.cell += count;

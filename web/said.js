@@ -1,10 +1,10 @@
-// What the page says in words: the heading, the verdict, notes and facts.
+// Text of the page: the heading, the verdict, notes and facts.
 
 import {byId, counted, element, grouped, short, shortDeltaE} from './dom.js';
 import {visibilityOf} from './judge.js';
 import {asItCame, contents, edited, hasMeasured, hasSamples, heading, isModelBeside, isPictured, lobesText, page, referenceTitle, state} from './page_state.js';
 
-const NOTABLE_REACH = 2;  // as in the program's summary
+const NOTABLE_REACH = 2;  // the limit of the program's summary
 
 // How far apart the two are: of the fit as it came the report's, else the page's own, {words, name, mean, at95, of}, or null
 // while that is not known.
@@ -98,7 +98,7 @@ function formText() {
   return lobesText(page.base) + numbers;
 }
 
-// Of a panel: [title, text].
+// Caption of a panel: [title, text].
 export function captionOf(mode) {
   const changed = edited() ? ', edited' : '';
   const title = isModelBeside() ? page.modelFile.name : 'Fitted';

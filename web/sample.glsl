@@ -6,7 +6,7 @@ const int TB_NODES = TB_THETAS_I * TB_PHIS_I;
 float tb_values(int node, int row, int k) { return tb_number(TB_VALUES_BASE, (node * TB_ROWS + row) * TB_S + k); }
 float tb_y(int row) { return tb_number(TB_Y_BASE, row); }
 
-// Where wi lies between the nodes, where its half vectors end, and the integral of all.
+// Place of wi between the nodes, the end of its half vectors, and the integral of all.
 struct TbIncident {
   ivec4 node;
   vec4 weight;

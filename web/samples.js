@@ -49,8 +49,8 @@ export function nearestSample({samples, anisotropic}, wi, wo) {
   return best && {degrees: Math.acos(Math.min(most, 1)) / DEGREE, sample: best};
 }
 
-// Those in the plane of incidence with the light at `thetaI` [rad]: [[theta_o, rho]...], theta_o [degrees] positive on
-// the side of the mirror direction. `within` [rad] of both.
+// Samples in the plane of incidence with the light at `thetaI` [rad]: [[theta_o, rho]...], theta_o [degrees] positive
+// on the side of the mirror direction. `within` [rad] of both.
 export function samplesInPlane({samples}, thetaI, within = 2 * DEGREE) {
   const found = [];
   for (const {theta_i, theta_o, between, rho} of samples) {

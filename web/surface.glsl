@@ -1,7 +1,7 @@
 // The normal and the tangent that each pixel sees, of a sphere, a cloth or a flat sample. The cloth is that of
 // src/model/appearance/view.cc.
 uniform int object;  // 0 sphere, 1 cloth, 2 flat
-uniform vec2 turn;   // of the object about y and x, of the cloth's thread, or of the sphere's axis about z and x [rad]
+uniform vec2 turn;   // object about y and x, the cloth's thread, or the sphere's axis about z and x [rad]
 uniform float size;  // pixels
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 tangent;
@@ -28,7 +28,7 @@ void main() {
     normal = vec4(n, 1.0);
     tangent = vec4(along / max(length(along), 1e-12), 0.0);
   } else if (object == 1) {
-    const float c = 0.8660254037844386, s = 0.5;  // of the lean
+    const float c = 0.8660254037844386, s = 0.5;  // cosine and sine of the lean, 30 degrees
     float u = p.x, v = p.y / c;
     for (int step = 0; step < 12; ++step) {
       vec3 fold = fold_at(u, v);

@@ -1,4 +1,4 @@
-// What words mean: a "?" beside each.
+// Explanations of words: a "?" beside each.
 
 import {element} from './dom.js';
 
@@ -21,7 +21,7 @@ export function help(word) {
   const made = element('details', {className: 'help'}, element('summary', {ariaLabel: `What is this: ${word}`, title: WORDS[word]}), text);
   made.addEventListener('toggle', () => {
     if (!made.open) return;
-    // Within the window.
+    // Keeps the text within the window.
     text.style.left = '0';
     const {left, right} = text.getBoundingClientRect(), width = document.documentElement.clientWidth;
     text.style.left = `${Math.max(8 - left, Math.min(0, width - 8 - right))}px`;

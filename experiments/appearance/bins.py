@@ -20,15 +20,15 @@ def converted(program, file, flags=()):
 
 
 def table(program, file):
-    """What was fitted, from a file."""
+    """The table of a measurement or fit, from a file."""
     if file.endswith(".npy"):
         return numpy.broadcast_to(numpy.load(file), (*merl.SHAPE, 3))
     return merl.read(file) if file.endswith(".binary") else converted(program, file)
 
 
 def _nearest_above():
-    """For each bin the one of its row that is above the surface and nearest in phi_d, and whether
-    there is one. [bins], [bins]"""
+    """The bin above the surface in the same row that is nearest in phi_d, for each bin, and whether there is one.
+    [bins], [bins]"""
     above = numpy.minimum(*merl.cosines()) > 0
     phi = numpy.arange(merl.SHAPE[2])
     row = numpy.where(above, phi, -1)

@@ -12,7 +12,7 @@ from lab.units import FOLDER, Product, Unit
 from renderer import noise, pictures
 from renderer import units as rendering
 
-ONE = ("threads", "start")  # of these the tables know one
+ONE = ("threads", "start")  # the tables know one of each
 SHARED, INDEPENDENT = "shared", "independent"  # the runs that everything is held against
 BIVARIATE, COARSE = "bivariate", "bivariate of 8,100"
 FACTORS = {"awls": 0, "awls, filtered": 1}  # the fits of which D, F and G are drawn
@@ -20,9 +20,9 @@ PUBLISHED = ("NPF", "SGD", "ABC", "Cook-Torrance", "Ward")  # the first as a mod
 PEER = "network"
 BUILT_IN = "built-in"
 HERE = pathlib.Path(__file__).resolve().parent
-PICTURED = (HERE / "bins.py", *rendering.modules("pictures.py"))  # what `render` reads
+PICTURED = (HERE / "bins.py", *rendering.modules("pictures.py"))  # files that `render` reads
 NPF_MODEL = HERE.parent / "final_error" / "npf_model"
-# What is worse than everything, for what is missing.
+# Worst values, for results that are missing.
 WORST = {"psnr_db": -math.inf, "linear_psnr_db": -math.inf, "flip": math.inf}
 
 
@@ -352,7 +352,7 @@ def _against_table(rows):
 
 
 def _rank_table(rows):
-    """How the program's own measure orders the materials, and how the renderer does."""
+    """Compares the order of the materials by the program's own measure with that by the renderer."""
     lines = []
     sphere = [row for row in rows if row["scene"] == "sphere"]
     databases = {"all": sphere, **tables.groups(sphere, "database")}

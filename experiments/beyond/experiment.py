@@ -34,8 +34,8 @@ def _samples(setting, source, pattern, count):
 
 
 def _given(setting, source, part):
-    """What a set of the manifest gives of a source to each rule: [(name, seed of the noise, the file, flags of a fit,
-    the table as a Product or None)]."""
+    """Data that a set of the manifest gives of a source to each rule: [(name, seed of the noise, the file, flags of a
+    fit, the table as a Product or None)]."""
     made = []
     names = corruptions.of_kinds(part.get("hidden", {}))
     names += ["mask"] if part.get("mask") and setting.manifest["mask"] else []
@@ -130,7 +130,7 @@ def tabulate(setting, results):
 
 
 def _largest(albedo):
-    """Of the numbers in a nested list or object."""
+    """The largest albedo in a nested list or object."""
     if isinstance(albedo, dict):
         albedo = [value for name, value in albedo.items() if "theta" not in name and "deg" not in name]
     if isinstance(albedo, list):

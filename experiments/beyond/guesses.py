@@ -1,7 +1,7 @@
-"""What other rules guess where a table has no values. Tables are as in lab.merl, invalid bins below 0."""
+"""Guesses of other rules where a table has no values. Tables are as in lab.merl, invalid bins below 0."""
 import numpy
 
-EPSILON = 1e-3  # of logarithms, as Nielsen et al.
+EPSILON = 1e-3  # offset in logarithms, as in Nielsen et al.
 RIDGE = 40.0  # the price of components, as theirs
 ROWS = 16  # one of so many bins decides on the components
 
@@ -37,9 +37,9 @@ def nearest(table):
 
 
 def components(table, others, weight):
-    """By principal components of other whole tables, each channel by itself (Nielsen, Jensen, Ramamoorthi 2015, On
-    Optimal, Minimal BRDF Sampling for Reflectance Acquisition): logarithms relative to the median of all, weighted by
-    `weight` [SHAPE], cos theta_i cos theta_o. What is valid stays."""
+    """Guesses by principal components of other whole tables, each channel by itself (Nielsen, Jensen, Ramamoorthi 2015,
+    On Optimal, Minimal BRDF Sampling for Reflectance Acquisition): logarithms relative to the median of all, weighted
+    by `weight` [SHAPE], cos theta_i cos theta_o. What is valid stays."""
     known = is_measured(table).ravel()
     weight = numpy.maximum(weight, EPSILON).ravel()[:, None].astype(numpy.float32)
     columns = numpy.concatenate([numpy.maximum(other, 0).reshape(-1, 3).astype(numpy.float32) for other in others], 1)

@@ -12,11 +12,11 @@ from renderer import noise, pictures
 from renderer import units as rendering
 
 HERE = pathlib.Path(__file__).resolve().parent
-FORMULA, INTERPOLATED = "formula", "interpolated"  # as `render` names them
+FORMULA, INTERPOLATED = "formula", "interpolated"  # names in `render`
 DEFAULT, PUBLISHED, ROUND, ISOTROPIC = RUNS = ("default", "paper's nodes", "two azimuths",
                                                "isotropic")
 AMPLIFIED = 4  # differences in pictures
-# What is worse than everything, for what is missing.
+# Worst values, for results that are missing.
 WORST = {"psnr_db": -math.inf, "linear_psnr_db": -math.inf, "whole_psnr_db": -math.inf}
 
 
@@ -84,7 +84,7 @@ def _short(name):
 
 
 def _fit_rows(results):
-    """What the fits say at the measured directions."""
+    """Rows of fits, with their errors at the measured directions."""
     rows = []
     for result in results:
         if "run" not in result.labels:

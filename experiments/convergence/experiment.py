@@ -6,7 +6,7 @@ import numpy
 from lab import fits, stats, tables
 from lab.fits import Fit
 
-POINTS = 40  # of a curve, at iterations that grow by a constant factor
+POINTS = 40  # points per curve, at iterations that grow by a constant factor
 
 
 def units(setting):
@@ -102,7 +102,7 @@ def _curves_figure(curves):
                                          and row[column] is not None], "material")
             if not of_material:
                 continue
-            # As far as at least half of the materials go.
+            # The curve ends at an iteration that at least half of the materials reach.
             ends = sorted(max(row["iteration"] for row in rows) for rows in of_material.values())
             grid = numpy.unique(numpy.geomspace(1, max(2, ends[len(ends) // 2]), 60).round())
             values = [stats.value_at([row["iteration"] for row in rows],

@@ -7,13 +7,13 @@ from lab.units import FOLDER, Unit
 
 HERE = pathlib.Path(__file__).resolve().parent
 
-# What `info` says of a table, by words of its notes.
+# Faults of a table that `info` finds, by words of its notes.
 TOLD = {"cosine": "--cosine=", "stray light": "light from elsewhere", "saturation": "saturated",
         "levels": "few levels", "noise": "scatter by", "repeated": "repeats the last",
         "tilt": "is tilted", "shadow": "own light", "outliers": "dead readings",
         "dark noise": "dark noise is"}
 
-# What it says of scattered samples with a fault of `told_of_samples`; of clean ones nothing.
+# Words of its notes on scattered samples, by fault of `told_of_samples`; on clean ones there are none.
 TOLD_OF_SAMPLES = {"azimuth": "--azimuth=from_mirror", "relative": "add theta_i to it", "sign": "sign of an angle",
                    "elevation": "elevations", "radians": "in radians", "decibels": "as decibels are",
                    "scale": "--scale=0.01", "cosine_i": "--cosine=", "cosine_o": "--cosine=", "saturated": "saturated",
@@ -86,7 +86,7 @@ def _markdown_of_samples(rows):
 
 
 def _figure(rows):
-    """How often a fault is told, by its strength."""
+    """Draws the share of faults that are told, by their strength."""
     from lab import plots
     labels = {"scale": "values times", "saturated": "share of signals that is saturated"}
     faults = {fault: of for fault, of in tables.groups(rows, "fault").items() if fault in labels}

@@ -6,7 +6,7 @@ import numpy
 from lab import fits, records, stats, tables
 from lab.fits import Fit
 
-POINTS = 32  # of a curve, at times that grow by a constant factor
+POINTS = 32  # points per curve, at times that grow by a constant factor
 TARGETS = (0.1, 0.01, 0.001)
 DEFAULT_START = "analytic"
 SOON = 5  # seconds after which errors are compared
@@ -288,7 +288,7 @@ def _start_figure(runs, threads):
 
 
 def _above(row):
-    """How far a fit ends above the book of records; without a record above the lowest E here."""
+    """The excess of a fit's E over the book of records; without a record, over the lowest E here."""
     return row["excess"] if row.get("over_record") is None else row["over_record"]
 
 

@@ -10,7 +10,7 @@ from lab import fits, merl, records, stats, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
-ONE = ("threads", "start")  # of these the tables know one
+ONE = ("threads", "start")  # the tables know one of each
 MEASURES = ("psnr_db", "mean_relative_error", "mean_log_error")
 PUBLISHED = "published, one lobe"
 OURS = "three lobes"

@@ -15,7 +15,7 @@ EXACT = 1e-20
 
 
 def units(setting):
-    """For each source a model, the table that it has, and fits to that table."""
+    """A model of each source, the table that it has, and fits to that table."""
     manifest = setting.manifest
     made = []
     for source in setting.every(manifest["every"]):

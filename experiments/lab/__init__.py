@@ -1,4 +1,4 @@
-"""What the experiments share: units of work, campaigns, manifests, statistics, plots, reports."""
+"""Shared code of the experiments: units of work, campaigns, manifests, statistics, plots, reports."""
 
 
 class UsageError(Exception):

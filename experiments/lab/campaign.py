@@ -29,7 +29,7 @@ def _kind(unit):
 
 
 class _TimeLeft:
-    """Of the units to come: each as long as those of its kind have taken, or else as all have."""
+    """Time left for the units to come: each takes as long as those of its kind have taken, or else as all have."""
 
     def __init__(self, store, units):
         self._taken = {}

@@ -19,5 +19,5 @@ def strength_of(corruption):
 
 
 def flags(corruption):
-    """Those of the program."""
+    """The program's flags."""
     return {} if corruption == CLEAN else {"corrupt": corruption}

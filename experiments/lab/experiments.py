@@ -22,11 +22,11 @@ FOLDER = pathlib.Path(__file__).resolve().parents[1]
 
 @dataclasses.dataclass(frozen=True)
 class Setting:
-    """What one run is asked to do."""
+    """Settings of one run."""
 
     name: str
     form: str  # "full", or one of manifest.FORMS
-    manifest: dict  # of the form that runs, with the changes that were asked for
+    manifest: dict  # that of the form that runs, with the changes asked for
     sources: list  # [Source], those given or else the manifest's, before any choice among them
     build: pathlib.Path
     main_program: pathlib.Path
@@ -96,7 +96,7 @@ class Experiment:
         return self.folder / "README.md"
 
     def published(self, form="full"):
-        """Where the tables and pictures of the run lie that the page quotes."""
+        """The folder of the run's tables and pictures that the page quotes."""
         return self.folder / ("results" if form == "full" else f"results_{form}")
 
     @property
@@ -113,7 +113,7 @@ class Experiment:
 
 
 def settings(name, form="full", changes=()):
-    """What the experiment's manifest says, whose code this does not load."""
+    """The experiment's manifest, without loading its code."""
     return manifest.load(FOLDER / name / "manifest.json", form, changes)
 
 

@@ -10,8 +10,8 @@ import re
 from lab import UsageError
 from lab.units import FOLDER, Unit
 
-# What times are: of the clock on the wall, or of all threads' processors, which is what a fit takes
-# whatever else runs beside it.
+# Clocks of times: the one on the wall, or the processors of all threads, which is what a fit takes whatever else runs
+# beside it.
 CLOCKS = {"wall": "seconds", "processor": "processor seconds"}
 DEFAULT = "default"  # the weighting that the program takes if it is told none
 # The members of a run, and what they are if they are not given.
@@ -122,7 +122,7 @@ def clock(setting):
 
 
 class Fit:
-    """What `trilobe fit` wrote into a folder (docs/file-formats.md).
+    """The files that `trilobe fit` wrote into a folder (docs/file-formats.md).
 
     clock: one of CLOCKS.
     """

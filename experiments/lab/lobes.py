@@ -52,7 +52,7 @@ class Model:
             if table.ndim != 2 or len(table) != (CHANNELS if factor == "F" else self.lobes):
                 raise ValueError(f"{factor}: D and G must have a table a lobe, F one a channel")
             observed = numpy.ones(table.shape, dtype=bool)
-            lists = content.get("unobserved", content.get("dead", {}))  # as it was called first
+            lists = content.get("unobserved", content.get("dead", {}))  # "dead" was its first name
             for of, unobserved in zip(observed, lists.get(factor, [])):
                 of[unobserved] = False
             setattr(self, factor, table)
@@ -73,7 +73,7 @@ def congruence(a, b, weights=1.0):
 
 
 def scores(a, b):
-    """How alike every lobe of a and every lobe of b are in shape, whatever their strength. [a.lobes][b.lobes]
+    """Likeness in shape of every lobe of a and every lobe of b, whatever their strength. [a.lobes][b.lobes]
 
     It is the product of the congruences of D, weighted by the projected solid angle of its bins,
     of G and of s: 1 for lobes that differ in scale alone, 0 for lobes that have nothing in common

@@ -1,4 +1,4 @@
-"""What the figures were measured on and with."""
+"""The machine that figures were measured on, and versions of the software."""
 import functools
 import os
 import pathlib
@@ -39,7 +39,7 @@ def describe():
 
 @functools.cache
 def revision():
-    """Of these sources, with "-dirty" where they differ from it; None outside a repository."""
+    """Git revision of these sources, with "-dirty" where they differ from it; None outside a repository."""
     return _first_line("git", "-C", str(REPOSITORY), "describe", "--always", "--dirty")
 
 

@@ -23,7 +23,7 @@ report   all pages with their tables and pictures in one file, OUT/report.html
 
 
 SOME_FAILED = 3  # exit status: everything was tried, and some units have failed
-PUBLISHED_ROWS = 1000  # of a table: a larger one is bulk, which stays in OUT
+PUBLISHED_ROWS = 1000  # limit for tables: a larger one is bulk, which stays in OUT
 
 
 def _threads(text):
@@ -85,7 +85,7 @@ def shard(text):
 
 
 def setting_of(experiment, options):
-    """What this command line asks for."""
+    """The setting that this command line asks for."""
     settings = experiment.settings(options.form, options.set)
     if "runs" not in settings and (options.solvers or options.threads):
         raise UsageError(f"{experiment.name} takes no --solvers and no --threads")
@@ -237,7 +237,7 @@ def run(experiment, options):
             tabulate(experiment, setting, store, units, part)
             draw(experiment, part)
         _fill(folder, fill)
-        if options.form != "quick":  # what it has found below the book's
+        if options.form != "quick":  # tells results below the book's
             try:
                 lines = records.update(setting.main_program, store.root, new=False)[1:]
             except UsageError as error:
@@ -322,7 +322,7 @@ def update_records(options):
 
 
 def stop(signal_number, _):
-    """As Ctrl-C: the unit that is being made is dropped, all others stay."""
+    """Ends the run like Ctrl-C: the unit that is being made is dropped, all others stay."""
     raise KeyboardInterrupt(signal_number)
 
 

@@ -31,7 +31,7 @@ SOLVERS = {
     "awls_block": (SKY, "-"),
     "awls_accelerated": (GREY, "-"),
 }
-# Of your own, in the order of their names.
+# Styles of your own solvers, in the order of their names.
 OTHER_SOLVERS = [(GREEN, "--"), (BLUE, "--"), (ORANGE, "--"), (SKY, "--")]
 
 plt.rcParams.update({
@@ -61,7 +61,7 @@ def label_ends(axes, x=1.01, spacing=0.05):
     lines = [line for line in axes.get_lines() if not line.get_label().startswith("_")
              and len(line.get_xdata())]
     axes.get_xlim(), axes.get_ylim()  # matplotlib scales the axes to the data when it is asked
-    to_axes = axes.transScale + axes.transLimits  # of data; fractions of the axes
+    to_axes = axes.transScale + axes.transLimits  # from data to fractions of the axes
     wanted = []
     for line in lines:
         height = to_axes.transform((line.get_xdata()[-1], line.get_ydata()[-1]))[1]

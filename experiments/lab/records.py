@@ -17,24 +17,24 @@ from lab.units import Unit
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "records"
 BOOK = FOLDER / "records.csv"
 
-# What a record is of. The checksum is that of the measured values (`source_xxh128` of a report).
+# Key of a record. The checksum is that of the measured values (`source_xxh128` of a report).
 KEY = ("material", "source_xxh128", "valid_samples", "weighting", "model", "lobes", "parameters")
-# What a search has seen: how many starts it tried, how many came as low as the record, in how many minima they ended,
-# how many were random, how probable a new minimum is of a further one, and how many ended more than 1 % below all that
-# were not random, those of `auto` among these.
+# Columns on a search: how many starts it tried, how many came as low as the record, in how many minima they ended, how
+# many were random, the probability that a further one finds a new minimum, and how many ended more than 1 % below all
+# that were not random, those of `auto` among these.
 SEARCH = ("starts", "came_there", "minima", "random", "new_minimum", "random_lower")
 LOWER = 0.01
-# A model is none of a material if its largest G, in the scale of stored models, or the least share of the light that a
-# lobe reflects is beyond these.
+# A model is degenerate if its largest G, in the scale of stored models, is above the first of these, or the least share
+# of the light that a lobe reflects is below the second.
 LARGE_G, NO_LIGHT = 1e4, 1e-4
 # Flags that give a fit other data, or lower another E, than the measurement and the weighting say.
 OTHER_DATA = ("corrupt", "missing", "dark_noise", "outliers", "extrapolated", "tilt", "cosine", "scale",
               "azimuth", "robust", "scene")
-# As precisely as a model file's E can be found again.
+# Relative accuracy with which a model file's E can be found again.
 AGREES = 1e-9
 # A search has come to a record, by whatever fit, if its E is at most this share above.
 SAME = 1e-3
-STARTS = 40  # that a search tries at most
+STARTS = 40  # most starts that a search tries
 # Flags that say what is fitted, which a search takes from the command of the record.
 OF_PROBLEM = ("--max_angle=", "--weighting=", "--lobes=", "--model=")
 
@@ -64,13 +64,13 @@ def lowest(report, material):
 
 
 def excess(objective, report, material):
-    """How far an E is above the record of this fit's measurement, weighting and form; None without a record."""
+    """Relative excess of an E over the record of this fit's measurement, weighting and form; None without a record."""
     least = lowest(report, material)
     return objective / least - 1 if 0 < least < math.inf else None
 
 
 def columns(report, material):
-    """What a row of a table has for `refresh`: the key of its record, in one cell, and the record's E."""
+    """Columns of a table for `refresh`: the key of the row's record, in one cell, and the record's E."""
     key = key_of(report, material)
     least = lowest(report, material)
     return {"record_of": " ".join(map(str, key[1:])), "record": least if math.isfinite(least) else None}
@@ -115,7 +115,7 @@ def _flags_of(report):
 
 
 def signs(folder, report):
-    """What the model looks like that a fit has left, and whether it is degenerate."""
+    """Properties of the model in the folder of a fit, and whether it is degenerate."""
     G = json.loads((folder / "model.json").read_text())["G"]
     while G and isinstance(G[0], list):
         G = list(itertools.chain.from_iterable(G))

@@ -50,15 +50,15 @@ FORMS = {"full": "full form", "quick": "quick form, whose figures mean nothing",
 
 @dataclasses.dataclass(frozen=True)
 class Results:
-    """Where the tables and pictures of a form of an experiment are: those that are published with its page,
-    or of another run."""
+    """The folder with tables and pictures of a form of an experiment: those that are published with its page, or of
+    another run."""
 
     folder: pathlib.Path | None
     published: bool = True
 
     @property
     def run(self):
-        """What the run has left about itself, None where it has not."""
+        """The manifest that the run has left; None where there is none."""
         path = self.folder / "manifest.json" if self.folder else None
         return json.loads(path.read_text()) if path and path.exists() else None
 
@@ -90,7 +90,7 @@ def _inline(text):
 
 
 def _content(match, results):
-    """What a link that stands alone in its line leads to: a picture with its caption, a table, a text."""
+    """The target of a link that stands alone in its line: a picture with its caption, a table, a text."""
     picture, caption, form, name = match.groups()
     folder = results["anisotropic" if form else "full"].folder
     path = folder / name if folder else None

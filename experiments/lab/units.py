@@ -41,11 +41,11 @@ class Unit:
 
     path: str  # readable place in the store, "fit/chrome/awls"; the same for the same command
     program: pathlib.Path
-    arguments: tuple  # of str, which may hold FOLDER, and of Product
+    arguments: tuple  # str, which may hold FOLDER, and Product
     product: str = "stdout.txt"  # the file without which the command has failed
     timeout_s: float | None = None
-    modules: tuple = ()  # of paths: files that the program reads besides, whose bytes count
-    # What the unit is to its experiment, {"material": "chrome", "solver": "awls"}; not in its key.
+    modules: tuple = ()  # paths of files that the program reads besides, whose bytes count
+    # Labels of the unit in its experiment, {"material": "chrome", "solver": "awls"}; not in its key.
     labels: dict = dataclasses.field(default_factory=dict, compare=False)
 
     @functools.cached_property
@@ -99,7 +99,7 @@ def _with_hash(argument):
 
 
 def _processor_seconds():
-    """Of all commands that have ended: what they had of all processors, whatever else ran."""
+    """Processor time of all commands that have ended, on all processors, whatever else ran."""
     of = resource.getrusage(resource.RUSAGE_CHILDREN)
     return of.ru_utime + of.ru_stime
 
@@ -129,7 +129,7 @@ class Store:
         return self.folder(unit).is_dir()
 
     def record(self, unit):
-        """How a unit was made: command, seconds, machine. None if it is not made."""
+        """The record of a unit: command, seconds, machine. None if it is not made."""
         try:
             return json.loads((self.folder(unit) / "unit.json").read_text())
         except FileNotFoundError:
@@ -178,7 +178,7 @@ class Store:
             try:
                 part.rename(folder)
             except OSError:
-                if not folder.is_dir():  # else another process has made the same unit meanwhile
+                if not folder.is_dir():  # another process may have made the same unit meanwhile
                     raise
         finally:
             shutil.rmtree(part, ignore_errors=True)

@@ -1,16 +1,16 @@
-"""What other forms than the paper's are worth: see README.md beside this file."""
+"""Other forms than the paper's, and what they are worth: see README.md beside this file."""
 import json
 
 from lab import fits, stats, tables
 from lab.units import FOLDER, Product, Unit
 
-EQUAL = 0.01  # of E, or dB of the sphere: no difference
+EQUAL = 0.01  # relative to E, or dB of the sphere: no difference
 COLUMNS = ("parameters", "relative_objective", "of_paper", "held_out_objective", "held_out_of_paper",
            "sphere_psnr_db", "sphere_mean_delta_e", "steps", "converged", "seconds")
 
 
 def units(setting):
-    """For each source its default fit, and all forms from that."""
+    """The default fit of each source, and all forms from that."""
     manifest = setting.manifest
     made = []
     for source in setting.every(manifest["every"]):

@@ -10,12 +10,12 @@ from lab import fits, lobes, records, stats, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
-SUCCESS = 0.01  # of E above the lowest: as good
-COLLAPSED = 1e-4  # of the reflected light: less is no lobe
+SUCCESS = 0.01  # relative to the lowest E: at most so much above is as good
+COLLAPSED = 1e-4  # share of the reflected light, less than which is no lobe
 COPY = 0.99  # how alike two lobes of one model are
 BLOWN_UP = 2.0  # times what the reference reflects
 SAME = 0.9  # agreement of lobes that are the same
-STABLE = 0.9  # of a material's runs have the same
+STABLE = 0.9  # share of a material's runs that have the same lobes
 STARTS, CLEAN, NOISE = "starts", "noise-free", "noise"
 
 
@@ -207,7 +207,7 @@ def tabulate(setting, results):
 
 
 def _shares_figure(rows):
-    """What each lobe reflects, a dot a run."""
+    """Draws the light that each lobe reflects, a dot a run."""
     from lab import plots
     by_material = tables.groups(rows, "material")
     solvers = list(dict.fromkeys(row["solver"] for row in rows))
@@ -338,7 +338,7 @@ def _range(values, digits=3):
 
 
 def _same(rows, column="agreement"):
-    """Of the runs beside that which they are compared with, how many have its lobes, %."""
+    """How many runs have the lobes of the run that they are compared with, that one left out, %."""
     others = [row for row in rows if row[column] is not None and not (column == "agreement" and row["reference"])]
     return _percent(others, lambda row: row[column] >= SAME)
 
@@ -349,7 +349,7 @@ def _stops(rows):
 
 
 def _materials_with(rows, column):
-    """On how many materials STABLE of the runs have the same lobes."""
+    """The number of materials on which STABLE of the runs have the same lobes."""
     count = 0
     for of in tables.groups(rows, "material").values():
         others = [row for row in of if row[column] is not None and not (column == "agreement" and row["reference"])]
@@ -358,7 +358,7 @@ def _materials_with(rows, column):
 
 
 def _seen(rows):
-    """By how much the PSNR of the sphere differs between the runs on a material: median and range over these."""
+    """Differences of the sphere's PSNR between the runs on a material: median and range over the materials."""
     values = [[row["psnr_db"] for row in of] for of in tables.groups(rows, "material").values()]
     return _range([max(of) - min(of) for of in values], 2)
 

@@ -4,9 +4,9 @@ import time
 
 import numpy
 
-# What reverse-mode differentiation takes over E itself, at most (Griewank and Walther, Evaluating
-# Derivatives, 2008, chapter 3). Our sums make J'J beside the gradient and take some ten times as
-# long, which is not the optimiser's fault: the rest is not charged.
+# Upper limit on the cost of reverse-mode differentiation, in units of E itself (Griewank and Walther, Evaluating
+# Derivatives, 2008, chapter 3). Our sums make J'J beside the gradient and take some ten times as long, which is not the
+# optimiser's fault: the rest is not charged.
 GRADIENT_COSTS = 3
 
 

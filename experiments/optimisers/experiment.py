@@ -11,8 +11,8 @@ from lab.units import FOLDER, Unit
 
 HERE = pathlib.Path(__file__).parent
 OURS = "trilobe"
-ONE_START = "varpro"  # of ours, as theirs: auto compares several
-# What a method takes of E besides its value: the panels of the picture.
+ONE_START = "varpro"  # our solver with one start, like theirs: auto compares several
+# Derivatives of E that a method takes: the panels of the picture.
 FIRST, SECOND = "gradients", "second derivatives"
 METHODS = {  # library, what it takes
     "lbfgsb": ("SciPy", FIRST), "lbfgsb_log": ("SciPy", FIRST), "tnc": ("SciPy", FIRST),
@@ -20,10 +20,10 @@ METHODS = {  # library, what it takes
     "slsqp": ("NLopt", FIRST), "ipopt_lbfgs": ("Ipopt", FIRST), "adam": ("Adam", FIRST),
     "trf": ("SciPy", SECOND), "dogbox": ("SciPy", SECOND), "ipopt": ("Ipopt", SECOND),
     "ipopt_gauss_newton": ("Ipopt", SECOND)}
-SHARES = (0.2, 0.4, 1)  # of the seconds: when E is looked at
+SHARES = (0.2, 0.4, 1)  # shares of the seconds after which E is compared
 TARGETS = (0.1, 0.01, 0.001)
 ALIKE = 0.001
-POINTS = 40  # of a curve
+POINTS = 40  # points per curve
 
 
 def units(setting):

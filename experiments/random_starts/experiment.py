@@ -14,7 +14,7 @@ CLOSE = 0.001
 ALIKE = 0.001  # medians of E nearer than this are alike
 # How far E is above the lowest of its material.
 CLASSES = {(-1, FOUND): "up to 1 %", (FOUND, NEARLY): "1 to 5 %", (NEARLY, 0.2): "5 to 20 %", (0.2, math.inf): "more"}
-# Of the analysis of variance. A start means something on one material only.
+# Factors of the analysis of variance. A start means something on one material only.
 FACTORS = ("material", "solver", "seed")
 PARTS = {"solver": [("solver",)], "solver by material": [("material", "solver")],
          "start": [("seed",), ("material", "seed")],
@@ -132,7 +132,7 @@ def _paired(rows):
 
 
 def _seen(seen):
-    """What one sees of a higher E: a line a class, the median and quartiles of its materials."""
+    """Visible effects of a higher E: a line a class, the median and quartiles of its materials."""
     lines = []
     for name in CLASSES.values():
         of = [row for row in seen if row["E_above"] == name]
@@ -147,7 +147,7 @@ def _seen(seen):
 
 
 def _shares(starts):
-    """What the variance of log E is made of, the material left aside, whose part depends on the choice of them; by all
+    """Shares of the variance of log E, without that of the material, which depends on the choice of them; by all
     solvers that have had all starts, and without one of them each."""
     logs = [{**row, "log_E": math.log(max(row["E"], 1e-300))} for row in starts]
     cube, solvers = stats.crossed(logs, FACTORS, "solver", "log_E")
@@ -200,7 +200,7 @@ def _figure(starts, rows):
 
 
 def draw(drawn, _):
-    starts, rows = drawn.get("starts"), drawn["solvers"]  # of all starts: bulk, which published tables lack
+    starts, rows = drawn.get("starts"), drawn["solvers"]  # all starts are bulk, which published tables lack
     products = {"searched.md": _searched(drawn["searched"])} if drawn.get("searched") else {}
     if rows:
         products |= {"summary.md": _summary(rows), "paired.md": _paired(rows), "seen.md": _seen(drawn["seen"])}

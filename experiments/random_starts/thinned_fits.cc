@@ -53,7 +53,7 @@ BrdfTable Table(const std::string& source, const std::string& corrupt) {
                             .extrapolated = FLAGS_extrapolated});
 }
 
-// As many samples as `auto` looks at before it has a start, though not of every other row.
+// Objective of as many samples as `auto` uses until it has a start, though not of every other row.
 Objective ThinnedObjective(const BrdfTable& table, const Weighting& weighting) {
   const BrdfSamples samples = ValidSamples(table);
   const ModelSpec spec = ModelSpec::SharedFactors(3, samples.grid);
@@ -80,7 +80,7 @@ Way WayOf(std::string_view name) {
 struct Run {
   FactorModel model;
   SolverSummary summary;
-  double seconds = 0;  // of a processor
+  double seconds = 0;  // processor time
 };
 
 Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objective& objective) {

@@ -1,4 +1,4 @@
-"""What scenes keep of what they read: see README.md beside this file."""
+"""Do scenes keep what they read, and no more? See README.md beside this file."""
 import json
 import pathlib
 
@@ -7,7 +7,7 @@ from lab.units import FOLDER, Product, Unit
 from renderer import units as rendering
 
 LUMINANCE = "luminance"
-GRID = (90, 90, 180)  # of MERL's tables, and of what is made of RGL's
+GRID = (90, 90, 180)  # bins of MERL's tables, and of those made from RGL's
 
 
 def _source(path):
@@ -30,7 +30,7 @@ def _renders(setting):
 
 
 def units(setting):
-    """For each way to read the materials a run of `trilobe fit --scene`."""
+    """A run of `trilobe fit --scene` for each way to read the materials."""
     manifest = setting.manifest
     renders = _renders(setting)
     settings = {key: manifest[key] for key in ("pairs", "budget", "luminance_budgets", "seed")}
@@ -111,7 +111,7 @@ def _budgets_table(rows):
 
 
 def _growth(of):
-    """By which factor a looser budget keeps more than a tighter one, at most."""
+    """The largest factor by which a looser budget keeps more than a tighter one."""
     of = sorted(of, key=lambda row: row["budget"])
     return max([1.0, *(later["parameters"] / row["parameters"] for k, row in enumerate(of) for later in of[k + 1:])])
 

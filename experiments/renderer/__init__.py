@@ -1,1 +1,1 @@
-"""What experiments that make pictures share: scenes, paths of light, Mitsuba, pictures."""
+"""Shared code of experiments that make pictures: scenes, paths of light, Mitsuba, pictures."""

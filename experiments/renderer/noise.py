@@ -1,4 +1,4 @@
-"""How much of the difference between two pictures is noise of their paths."""
+"""The share of the difference between two pictures that is noise of their paths."""
 import numpy
 
 from lab import tables
@@ -8,7 +8,7 @@ AGAIN = 2  # the seed of the second pictures, that tell the noise
 
 
 def rows(folder_of, reference):
-    """What pictures of other paths differ by, and their differences from the reference.
+    """Differences between pictures of independent paths, and from the reference.
 
     folder_of: {(material, scene, seed): folder of pictures.npz}, which has `share`, the reference
     and what is held against it

@@ -1,4 +1,4 @@
-"""How far apart two pictures are, and pictures as files show them."""
+"""Differences between two pictures, and pictures as files show them."""
 import importlib.util
 import io
 
@@ -23,7 +23,7 @@ def encoded(linear):
 
 
 def psnr(a, b, peak=1.0):
-    """Over all values, dB; infinite for equal ones."""
+    """The PSNR over all values, dB; infinite for equal ones."""
     error = numpy.mean((a - b) ** 2)
     return float(10 * numpy.log10(peak ** 2 / error)) if error > 0 else float("inf")
 

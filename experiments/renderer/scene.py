@@ -68,8 +68,8 @@ def camera(options):
 
 
 def coordinates(n, wi, wo):
-    """Where two directions lie in a table in MERL layout: theta_h, theta_d, phi_d in units of bins,
-    0 at the centre of the first. n, wi, wo: [..., 3] of length 1. [..., 3]"""
+    """Coordinates of two directions in a table in MERL layout: theta_h, theta_d, phi_d in units of bins, 0 at the
+    centre of the first. n, wi, wo: [..., 3] of length 1. [..., 3]"""
     h = wi + wo
     h = h / numpy.maximum(numpy.linalg.norm(h, axis=-1, keepdims=True), 1e-12)
     cos_h = numpy.clip((n * h).sum(-1), 0, 1)

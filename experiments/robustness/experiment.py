@@ -12,7 +12,7 @@ from lab.units import FOLDER, Product, Unit
 from PIL import Image
 from renderer import pictures
 
-LOST_DB = 3.0  # of the sphere: where a fit breaks down
+LOST_DB = 3.0  # loss on the sphere at which a fit breaks down
 SPHERES, WIDTH = 8, 130  # a line; pixels
 SAME_LOBE = 0.9  # congruence of the worst lobe with that of the clean fit
 THREADS = 1
@@ -47,7 +47,7 @@ def _known(setting):
 
 
 def _sources(setting, of):
-    """Those that a set of fits names, or every n-th of the lists, or all."""
+    """The sources that a set of fits names, or every n-th of the lists, or all."""
     known = _known(setting)
     given = setting.every(of["every"]) if "every" in of else setting.sources
     return [source for source in given + known
@@ -122,8 +122,7 @@ def _same_lobes(model, clean):
 
 
 def _albedo_error(score):
-    """By how much the share of light that is reflected is off, in the mean over theta_i; nan where
-    no appearance was compared."""
+    """Mean error over theta_i of the share of light that is reflected; nan where no appearance was compared."""
     appearance = score.get("appearance") or {}
     return (appearance.get("albedo") or {}).get("mean_error", math.nan)
 
@@ -196,7 +195,7 @@ def _by_default(rows):
 
 
 def _by_corruption(rows):
-    """What the default loses, a line a corruption, a column a material."""
+    """Losses of the default, a line a corruption, a column a material."""
     materials = list(tables.groups(rows, "material"))
     lines = []
     for corruption, of in tables.groups(rows, "corruption").items():
@@ -208,7 +207,7 @@ def _by_corruption(rows):
     return tables.markdown(["corruption", "lost dB, median", "most", *materials], lines)
 
 
-# What `errors.md` shows of each fit: heading, member of a row, digits.
+# Columns of `errors.md` for each fit: heading, member of a row, digits.
 ERRORS = (("lost dB", "lost_db", ".1f"), ("Delta E", "mean_delta_e", ".2f"),
           ("mean log error", "mean_log_error", ".4f"), ("albedo off by", "albedo_error", ".4f"),
           ("worst lobe", "worst_lobe", ".2f"), ("iterations", "iterations", ".0f"),
@@ -216,8 +215,8 @@ ERRORS = (("lost dB", "lost_db", ".1f"), ("Delta E", "mean_delta_e", ".2f"),
 
 
 def _errors(rows):
-    """By default, a line a corruption: errors against the clean table, and what a fit took; medians
-    over the materials, those of an earlier run having no albedo."""
+    """The table of the default, a line a corruption: errors against the clean table, and what a fit took; medians over
+    the materials, those of an earlier run having no albedo."""
     lines = []
     for corruption, of in tables.groups(rows, "corruption").items():
         known = [[row[name] for row in of if not math.isnan(row.get(name, math.nan))]
@@ -303,8 +302,7 @@ def _figure(rows):
 
 
 def _in_order(rows):
-    """By kind, in the order of the first ones, and by strength: weakest first where a kind has
-    several of one sign."""
+    """Rows by kind, in the order of the first ones, and strength, weakest first for several of one kind and sign."""
     kinds = list(tables.groups([{"kind": kind_of(row["corruption"])} for row in rows], "kind"))
 
     def place(row):

@@ -124,7 +124,7 @@ NdfSampler::HalfVector NdfSampler::Draw(const Table& table, double u_y, double u
   return {y, 2 * kPi * (p + f) / num_phi_};
 }
 
-// Of y and phi the density is value / (2 pi integral of row), and d omega_h = dy d phi / (2 cos).
+// The density over y and phi is value / (2 pi integral of row), and d omega_h = dy d phi / (2 cos).
 double NdfSampler::Density(const Table& table, const Direction& h) const {
   if (!(table.cumulated.back() > 0)) return 0;
   const double y = std::clamp(h[0] * h[0] + h[1] * h[1], 0.0, 1.0);

@@ -23,16 +23,16 @@ class NdfSampler {
 
   // The bins of theta_h over which D is tabulated.
   enum class Bins {
-    kOfModel,    // as wide as those of D: of MERL 0.01 to 2 degrees
-    kOneDegree,  // as eq. 8 is printed, whose sum takes 90 bins for equally wide
+    kOfModel,    // the widths of D's bins: for MERL 0.01 to 2 degrees
+    kOneDegree,  // eq. 8 as printed, whose sum takes 90 bins for equally wide
   };
 
   // Throws Error for parameters that are not finite and 0 or more, and of an anisotropic model for
   // kOneDegree, as eq. 8 is of isotropic ones.
   explicit NdfSampler(const FactorModel& model, Bins bins = Bins::kOfModel);
 
-  // As Bsdf has them; where wo is below the surface, pdf and weight are 0, and a renderer gets
-  // nothing for its ray. So the density over the directions above it integrates to less than 1.
+  // Same as those of Bsdf, but where wo is below the surface, pdf and weight are 0: a renderer gets
+  // nothing for its ray, and the density over directions above it integrates to less than 1.
   Sample SampleWo(const Direction& wi, const std::array<double, 2>& u) const;
   double Pdf(const Direction& wi, const Direction& wo) const;
 

@@ -40,7 +40,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Sample = Bsdf<double>::Sample;
 
-// What a renderer asks a material for.
+// Functions that a renderer asks a material for.
 struct Sampler {
   std::string name;
   std::function<Sample(const Direction& wi, const std::array<double, 2>& u)> draw;
@@ -185,7 +185,7 @@ double RelativeMse(const Picture& picture, const Picture& reference) {
   return sum / static_cast<double>(kChannels * picture.radiance.size());
 }
 
-// What a renderer without the model's own sampling would do: visible normals of the GGX lobe, and
+// Sampler of a renderer that does not have the model's own: visible normals of the GGX lobe, and
 // the share of a cosine, with which a picture is least noisy of those tried.
 Sampler FittedGgx(const std::vector<Pixel>& pixels, const EnvironmentSampler& environment,
                   const Bsdf<double>& bsdf, const Picture& reference, Json* described) {

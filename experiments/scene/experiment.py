@@ -16,7 +16,7 @@ def _absolute(path):
 
 
 def units(setting):
-    """For each budget the scene's fit, which reuses nothing, and its comparison with full fits.
+    """The scene's fit for each budget, which reuses nothing, and its comparison with full fits.
 
     The full fits are those of the first comparison, which the others take out of its cache.
     """
@@ -118,7 +118,7 @@ def _materials_table(rows):
 
 def _label_points(axes, points):
     """Writes the budget of each point, (x, y, text), beside it; budgets that meet share a label."""
-    to_axes = axes.transScale + axes.transLimits  # of data; fractions of the axes
+    to_axes = axes.transScale + axes.transLimits  # from data to fractions of the axes
     shared = []  # [place in the axes, point, texts]
     for x, y, text in points:
         place = to_axes.transform((x, y))

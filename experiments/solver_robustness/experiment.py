@@ -7,7 +7,7 @@ from lab import corruptions, fits, stats, tables
 from lab.corruptions import CLEAN, kind_of, strength_of
 from lab.units import Unit
 
-ALIKE = 0.01  # of 10^(dB / 20)
+ALIKE = 0.01  # relative, in 10^(dB / 20)
 FACTORS = ("material", "corruption", "solver", "weighting")
 
 
@@ -41,7 +41,7 @@ def tabulate(setting, results):
 
 
 def _lost(rows, by, where):
-    """What is lost by kind and strength, a column for each value of `by`; the first line has the PSNR of clean fits."""
+    """Losses by kind and strength, a column for each value of `by`; the first line has the PSNR of clean fits."""
     columns = list(dict.fromkeys(row[by] for row in rows if where(row)))
     lines = []
     for corruption, of in tables.groups([row for row in rows if where(row)], "corruption").items():
@@ -59,7 +59,7 @@ def _paired(rows, by, where):
     lines = []
     for one, other in itertools.combinations(of, 2):
         both = sorted(of[one].keys() & of[other].keys())
-        # As ratios, so that a tolerance is one of decibels.
+        # Ratios, so that the tolerance is one of decibels.
         lower, higher, _ = stats.sign_test(*([10 ** (-of[value][key]["psnr_db"] / 20) for key in both]
                                              for value in (one, other)), ALIKE)
         gain = [of[one][key]["psnr_db"] - of[other][key]["psnr_db"] for key in both]
@@ -74,7 +74,7 @@ def _paired(rows, by, where):
 
 
 def _shares(rows):
-    """What the variance of the PSNR is made of, over the solvers that have gone through all."""
+    """Shares of the variance of the PSNR, over the solvers that have gone through all."""
     cube, solvers = stats.crossed(rows, FACTORS, "solver", "psnr_db")
     if not solvers:
         return ""

@@ -10,16 +10,16 @@ from lab import UsageError, fits, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
-ONE = ("solver", "threads", "start")  # of these the tables know one
-# Instead of a run: the members of the manifest by which they are given.
+ONE = ("solver", "threads", "start")  # the tables know one of each
+# Members of the manifest by which comparisons other than runs are given.
 PEERS = {"peer": "peers", "reciprocal peer": "reciprocal_peers"}
 BUILT_IN = "built-in"
 SHOWN = "default"  # the run of which the gallery is
 FORMER = "compressive"  # the run that it is compared with
 PICTURE = "spheres.png"
-COLOUR = 0.02  # of the mean colour: no more is right
+COLOUR = 0.02  # relative error of the mean colour that is still right
 APART = 1.0  # dB: a difference that one may see
-# What is worse than everything, for what is missing.
+# Worst values, for results that are missing.
 WORST = {"psnr_db": -math.inf, "mean_delta_e": math.inf, "delta_e_95": math.inf,
          "mean_color_error": math.inf, "mean_log_error": math.inf}
 GALLERY_BYTES = 450_000  # at most
@@ -69,20 +69,20 @@ def units(setting):
 
 
 def _numbers(model):
-    """How many numbers a model file stores in its tables or coefficients."""
+    """The number of numbers that a model file stores in its tables or coefficients."""
     if isinstance(model, dict):
         return len(model["values"])
     return sum(map(_numbers, model)) if isinstance(model, list) else 1
 
 
 def _exponents(model):
-    """How many exponents say how the lobes' highlights are stretched."""
+    """The number of exponents by which the lobes' highlights are stretched."""
     stretch = model.get("stretch", [])
     return 2 * (len(stretch) if isinstance(stretch, list) else 1)
 
 
 def _of_fit(folder):
-    """What a fit took and takes."""
+    """The seconds that a fit took, and the numbers that its model has."""
     model = json.loads((folder / "model.json").read_text())
     return {"seconds": sum(Fit(folder).report["seconds"].values()),
             "numbers": sum(_numbers(model[part]) for part in ("d", "s", "D", "F", "G")) + _exponents(model)}
@@ -100,7 +100,7 @@ def _row(result, source, folder_of):
     if row["psnr_db"] is None:  # equal pictures
         row["psnr_db"] = math.inf
     row["mean_log_error"] = score["mean_log_error"]
-    # With all directions, also those that were not measured; where there are any.
+    # PSNR with all directions, also those that were not measured, where there are any.
     row["whole_psnr_db"] = looks["beyond"] and looks["beyond"]["psnr_db"]
     return {**row, **(_of_fit(folder_of[result.unit.root.key]) if result.unit.needs else {})}
 

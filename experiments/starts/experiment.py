@@ -4,7 +4,7 @@ import math
 from lab import fits, stats, tables
 from lab.fits import Fit
 
-ONE = ("solver", "threads", "weighting")  # of these the tables know one
+ONE = ("solver", "threads", "weighting")  # the tables know one of each
 CHECKPOINTS = (5, 10, 20, 40)  # sweeps, and the last one
 
 

@@ -25,8 +25,8 @@ FactorModel Reordered(const FactorModel& model, const std::vector<int>& order) {
   return result;
 }
 
-// What is less than this share of a table, or of the largest d or s, is 0: its errors are relative
-// to that.
+// Entries below this share of their table, or of the largest d or s, count as 0: their errors are
+// relative to that maximum.
 constexpr double kNothing = 1e-12;
 
 // Largest right value of d and s.

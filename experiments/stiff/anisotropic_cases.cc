@@ -13,7 +13,7 @@ namespace trilobe {
 namespace {
 
 constexpr int kPhiNodes = 8;
-constexpr int kTurn = 3;  // of the twins, in nodes
+constexpr int kTurn = 3;  // angle between the twins, in nodes
 
 ModelSpec SmallSpec(int lobes) {
   ModelSpec spec = ModelSpec::Anisotropic(lobes);

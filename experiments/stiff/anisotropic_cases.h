@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-// Those of models with D and G over azimuths, on few nodes.
+// Cases of models with D and G over azimuths, on few nodes.
 std::vector<StiffCase> AnisotropicCases();
 
 // A model or a measurement turned about the normal by so many of its nodes' steps in phi.

@@ -16,7 +16,7 @@ namespace trilobe {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 8};
-constexpr MerlGrid kFineGrid{.theta_h = 6, .theta_d = 6, .phi_d = 96};  // where much is lost
+constexpr MerlGrid kFineGrid{.theta_h = 6, .theta_d = 6, .phi_d = 96};  // for losses of bins
 
 // --- Materials: models with tables that are smooth but for a jitter, so that nothing is special
 // ---
@@ -288,7 +288,7 @@ StiffProblem DenormalTail() {
 
 StiffProblem FloatStorage() {
   return Changed(Regular(), [](double rho) {
-    // Else gcc 12 leaves some values in double precision.
+    // Without volatile, gcc 12 leaves some values in double precision.
     volatile auto single = static_cast<float>(rho);
     return static_cast<double>(single);
   });

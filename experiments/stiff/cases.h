@@ -18,8 +18,8 @@ struct StiffProblem {
   BrdfSamples samples;
   ModelSpec spec;
   std::string weighting = "compressive";
-  std::optional<FactorModel> truth;  // what was measured, before anything was done to the values
-  std::optional<FactorModel> start;  // where to start; else the library's default start
+  std::optional<FactorModel> truth;  // model of the values before they were changed
+  std::optional<FactorModel> start;  // initial model; else the library's default start
 };
 
 // A named one; `make` gives the same bits every time.

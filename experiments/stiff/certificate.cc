@@ -23,7 +23,7 @@ constexpr int kIterations = 600, kPolishIterations = 3000;
 // Ends of E within this of each other, relative to E, are one; and those whose E is at the rounding
 // error of the data, relative to the measured energy.
 constexpr double kSameObjective = 1e-8, kExact = 1e-27;
-constexpr int kPolished = 2;  // of the starts that agree
+constexpr int kPolished = 2;  // ends to polish among those that agree
 // Eigenvalues below this share of the largest are 0.
 constexpr double kFlat = 1e-25;
 // Entries that differ by less, relative to the largest of their table, are the same: of minimisers
@@ -57,7 +57,7 @@ std::vector<FactorModel> Starts(const StiffProblem& problem, int random_starts) 
   return starts;
 }
 
-// What E looks like around the minimiser x.
+// Shape of E around the minimiser x.
 class Neighbourhood {
  public:
   Neighbourhood(const ReferenceProblem<Big>& problem, VectorOf<Big> x)
@@ -117,7 +117,7 @@ class Neighbourhood {
   }
 
  private:
-  // Of a symmetric matrix in the scale in which columns of J have length 1.
+  // Spectrum of a symmetric matrix in the scale in which columns of J have length 1.
   Eigen::SelfAdjointEigenSolver<MatrixOf<Big>> Spectrum(const MatrixOf<Big>& lower,
                                                         const std::vector<int>& numbers) const {
     const int size = static_cast<int>(numbers.size());
@@ -151,7 +151,7 @@ class Neighbourhood {
   const ReferenceProblem<Big>& problem_;
   const VectorOf<Big> x_;
   const Derivatives<Big> at_;
-  VectorOf<Big> length_;  // of the columns of J
+  VectorOf<Big> length_;  // lengths of the columns of J
   std::vector<int> moving_, free_;
   std::vector<VectorOf<Big>> flat_;
 };

@@ -21,26 +21,26 @@ struct Certificate {
   bool exact = false;          // E is 0 but for the rounding of the measured values
 
   // Why to believe it.
-  double relative_decrease = 0;  // of E that a further Newton step promises
+  double relative_decrease = 0;  // relative decrease of E that a further Newton step promises
   double optimality = 0;         // scaled projected gradient (docs/solvers.md)
   int starts = 0, agreeing = 0;  // how many were tried, how many came to this E
   struct StationaryPoint {
     double objective = 0;
     int starts = 0;
   };
-  std::vector<StationaryPoint> others;  // where others converged, lowest E first
+  std::vector<StationaryPoint> others;  // ends of the other starts, lowest E first
 
   // Second order, of the parameters that are free (> 0, or 0 without a force that holds them).
   int free_parameters = 0;
   int flat_directions = 0;     // along which E does not change: scale between factors, and more
   int descent_directions = 0;  // along which E curves down: 0 at a minimum
-  // Of J with columns of length 1, columns of 0 left out: singular values that are not 0, and the
-  // largest over the smallest of them.
+  // For J with columns of length 1, columns of 0 left out: how many singular values are not 0, and
+  // the largest over the smallest of them.
   int rank = 0;
   double condition = 0;
 
   FactorModel model;  // the minimiser in canonical form
-  // By number in parameters(): entries that no data touch, or that differ between minimisers.
+  // Entries that no data touch, or that differ between minimisers, by index in parameters().
   std::vector<int> undetermined;
   // The largest difference of the others between minimisers from different starts, relative to the
   // largest entry of the table.

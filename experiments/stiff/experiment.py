@@ -7,7 +7,7 @@ from lab import tables
 from lab.units import FOLDER, Unit
 
 ANSWERS = pathlib.Path(__file__).with_name("certified.json")
-# What a cell says besides its digits, by how the run ended.
+# Marks of cells besides digits, by how the run ended.
 MARKS = {"certified": "", "other": "*", "elsewhere": "", "below": " below"}
 
 
@@ -16,7 +16,7 @@ def _certificates():
 
 
 def units(setting):
-    """One unit a case, all solvers in it."""
+    """A unit for each case, with all solvers in it."""
     known = [certificate["name"] for certificate in _certificates()]
     wanted = setting.manifest["cases"]
     return [Unit(f"stiff/{name}", setting.program("stiff"),

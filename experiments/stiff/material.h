@@ -9,8 +9,8 @@
 
 namespace trilobe {
 
-// What the materials of all cases have in common: d, F0 of Fresnel's factor by channel, s by lobe,
-// and the standard deviation of the logarithms by which the entries of tables jitter.
+// Parameters that the materials of all cases share: d, F0 of Fresnel's factor by channel, s by
+// lobe, and the standard deviation of the logarithms by which the entries of tables jitter.
 inline constexpr Rgb kDiffuse = {0.05, 0.08, 0.11};
 inline constexpr double kF0[kChannels] = {0.9, 0.5, 0.3};
 inline constexpr Rgb kWeight[] = {{0.3, 0.25, 0.2}, {0.4, 0.2, 0.5}, {0.2, 0.6, 0.7}};

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// Where a reference minimisation ended.
+// End of a reference minimisation.
 template <typename Real>
 struct Minimum {
   VectorOf<Real> x;
@@ -19,7 +19,7 @@ struct Minimum {
   // The largest projected component of the gradient in the scale in which columns of J have length
   // 1, over |r| (docs/solvers.md, "Optimality").
   Real optimality = 0;
-  Real relative_decrease = 0;  // of E, that a further Newton step promises
+  Real relative_decrease = 0;  // relative decrease of E that a further Newton step promises
   bool converged = false;      // relative_decrease is at the precision's level
   int iterations = 0;
 };
@@ -38,7 +38,7 @@ class ReferenceMinimizer {
  private:
   struct Step {
     VectorOf<Real> x;
-    Real predicted_decrease = 0;  // of E / 2
+    Real predicted_decrease = 0;  // in units of E / 2
   };
 
   void SetMetric();
@@ -50,7 +50,7 @@ class ReferenceMinimizer {
   const Real measured_energy_;
   const Real precision_;
   Derivatives<Real> at_;
-  VectorOf<Real> metric_;  // of the damping; 0 where a parameter cannot move
+  VectorOf<Real> metric_;  // metric of the damping; 0 where a parameter cannot move
 };
 
 // --- Implementation -----------------------------------------------------------------------------

@@ -477,7 +477,8 @@ VectorOf<Real> ReferenceProblem<Real>::ProjectedAngles() const {
       result(k) = 2 * right_angle * (sin2(edge(k + 1)) - sin2(edge(k)));
       continue;
     }
-    // From halfway to the ring before to halfway to the one after; the last as wide both ways.
+    // A ring reaches halfway to the one before and to the one after; the last is as wide on both
+    // sides.
     const std::vector<double>& theta = axis.theta;
     const int a = k / axis.phi_nodes, last = static_cast<int>(theta.size()) - 1;
     const Real before = (Real{theta[a]} - theta[a > 0 ? a - 1 : 0]) / 2;
@@ -500,7 +501,7 @@ bool ReferenceProblem<Real>::FillUnobserved(Factor factor, int begin, VectorOf<R
   std::vector<bool> filled(rings, false);
   for (int a = 0; a < rings; ++a) {
     const int ring = begin + a * columns;
-    // Where an entry is, `step` from k on; -1 beyond an end.
+    // Index of entry k in its ring, which wraps around; without azimuths negative beyond an end.
     const auto place = [&](int k) {
       return axis.polar() ? (k + columns) % columns : k < columns ? k : -1;
     };

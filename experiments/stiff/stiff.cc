@@ -47,8 +47,8 @@ double WorstRise(const std::vector<IterationRecord>& trace) {
   return worst;
 }
 
-// Where a run ended: at the certified E, below it (then that is no minimum), at another stationary
-// point that the certification met, or at none of these.
+// Tells how a run ended: at the certified E, below it (then that is no minimum), at another
+// stationary point that the certification met, or at none of these.
 std::string End(double objective, double scale, const Certificate& right) {
   const double excess = (objective - right.objective) / scale;
   if (objective == right.objective || std::abs(excess) <= kFound) return "certified";

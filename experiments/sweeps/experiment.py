@@ -44,7 +44,7 @@ def _filter_row(result, fit):
             "filter_deg": fit.report["options"]["given"]["g_filter_sigma"],
             "sweeps": fit.report["iterations"], "best_sweep": fit.report["best_iteration"],
             "sweeps_that_raised_E": len(rises), "worst_rise": max(rises, default=0.0),
-            # Of the sweeps: the report's E is that after entries at the edge of the data are tied.
+            # Lowest E of the sweeps: the report's E is that after entries at the edge of the data are tied.
             "objective": min(row["objective"] for row in fit.trace),
             "highest_objective": max(row["objective"] for row in fit.trace[1:]),
             "last_objective": fit.trace[-1]["objective"],
@@ -102,7 +102,7 @@ def _filter_table(rows):
 
 
 def _filter_figure(rows):
-    """What the filter costs in E and buys in smoothness: a line a material, a dot a weighting."""
+    """Draws the filter's cost in E and gain in smoothness: a line a material, a dot a weighting."""
     from lab import plots
     pairs = _pairs(rows)
     weightings = list(dict.fromkeys(row["weighting"] for row in rows))

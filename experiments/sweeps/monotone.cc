@@ -39,7 +39,7 @@ DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond 
 namespace trilobe {
 namespace {
 
-// What single updates have done to E.
+// Changes of E by single updates.
 struct Rises {
   int updates = 0;
   int raised = 0;

@@ -4,9 +4,9 @@ import math
 from lab import fits, stats, tables
 from lab.fits import Fit
 
-ONE = ("solver", "threads", "start")  # of these the tables know one
+ONE = ("solver", "threads", "start")  # the tables know one of each
 APART = 1.0  # dB: a difference that one may see
-# What is read of the sphere, and of the bins; and what a missing fit has.
+# Errors of the sphere and of the bins, with the values of a missing fit.
 SPHERE = {"psnr_db": -math.inf, "mean_delta_e": math.inf, "mean_color_error": math.inf}
 BINS = {"mean_log_error": math.inf, "mean_relative_error": math.inf}
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the package costs, by `package.py arrays MODEL.json` and `package.py mitsuba MODEL.json`.
+"""Measures the costs of the package, by `package.py arrays MODEL.json` and `package.py mitsuba MODEL.json`.
 
 arrays    evaluations and samples a second of one core, for arrays of a million pairs, and the time to import it
 mitsuba   in llvm_ad_rgb, processor time and noise of a sphere beside roughplastic and `measured` (an RGL file of the
@@ -72,7 +72,7 @@ def mitsuba(brdf: trilobe.Brdf) -> None:
         })
 
     def render(scene: mi.Scene, seed: int) -> tuple[float, np.ndarray]:
-        started = time.process_time()  # of all threads
+        started = time.process_time()  # all threads' processor time
         picture = mi.render(scene, seed=seed)
         dr.eval(picture)
         dr.sync_thread()

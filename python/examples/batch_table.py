@@ -25,7 +25,7 @@ def main():
     materials, noises = (MATERIALS[:2], NOISE[:3:2]) if arguments.quick else (MATERIALS, NOISE)
     tables = []
     for noise in noises:
-        # What is there already is not fitted again: a batch that was cut off goes on.
+        # Finished fits are kept, so that a batch that was cut off goes on.
         rows = trilobe.fit_many(
             [f"synth:{name}@24x24x48" for name in materials], arguments.out / f"noise-{noise:g}", noise=noise,
             program=arguments.program, solver="awls", max_iterations=2 if arguments.quick else 20)

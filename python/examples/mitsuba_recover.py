@@ -24,7 +24,7 @@ ENTRIES = 30
 
 def material():
     """One lobe, a golden metal with a halo."""
-    theta = (np.arange(ENTRIES) + 0.5) / ENTRIES  # of sqrt(theta_h / 90 degrees)
+    theta = (np.arange(ENTRIES) + 0.5) / ENTRIES  # nodes in sqrt(theta_h / 90 degrees)
     D = np.exp(-((theta / 0.3) ** 2) * 2) + 0.05 * np.exp(-((theta / 0.6) ** 2))
     F = 0.8 + 0.2 * np.linspace(0, 1, ENTRIES) ** 5 * np.ones((3, 1))
     G = np.cos(np.radians((np.arange(ENTRIES) + 0.5) * 90 / ENTRIES)) * np.ones((1, 1))
@@ -72,7 +72,7 @@ def main():
     ball = scene(start, size, spp)
     first = mi.render(ball, spp=256)
     parameters = mi.traverse(ball)
-    # Of logarithms, which any real number may be.
+    # Adam steps in logarithms, which may be any real number.
     adam = mi.ad.Adam(lr=0.06)
     for name in ("D", "s"):
         adam[name] = mi.TensorXf(np.log(np.array(parameters[f"ball.bsdf.{name}"])))

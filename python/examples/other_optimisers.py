@@ -146,7 +146,7 @@ OURS = ("awls", "lm", "auto")
 
 
 def compare(measurement, names, seconds):
-    """For each optimiser, (processor seconds, lowest E so far) at each evaluation."""
+    """Traces by optimiser: (processor seconds, lowest E so far) at each evaluation."""
     objective = trilobe.Objective(measurement, threads=1)
     start = objective.start()
     traces = {}
@@ -163,7 +163,7 @@ def compare(measurement, names, seconds):
         f = Recorder(objective, seconds)
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of logarithms that run away
+                warnings.simplefilter("ignore")  # logarithms may run away
                 OTHERS[name](f, start)
         except OutOfTime:
             pass

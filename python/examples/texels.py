@@ -63,7 +63,7 @@ def surface(size):
 
 
 def shown(f, white):
-    """As sRGB."""
+    """Display values of f, about sRGB (a gamma of 2.2)."""
     return np.clip(f / white, 0, 1) ** (1 / 2.2)
 
 

@@ -73,7 +73,7 @@ class Directions : Rows<Real, 3> {
     const Real square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
     constexpr Real kRounding = static_cast<Real>(sizeof(Real) == 4 ? 2e-6 : 1e-12);
     if (std::abs(square - 1) <= kRounding) return w;
-    // By the largest first, lest the square overflow or vanish.
+    // Scales by the largest component first, lest the square overflow or vanish.
     const Real largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
     if (!(largest > 0 && std::isfinite(largest))) return {};
     for (Real& x : w) x /= largest;
@@ -166,7 +166,7 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
   });
 }
 
-// Of a spectral model: rows of a value for each wavelength.
+// Evaluates a spectral model: each row of `out` has a value for each wavelength.
 void Spectrum(const Material& material, const Input<double>& wi, const Input<double>& wo,
               const Output<double>& out) {
   if (!material.file().spectral) throw Error("the model has no wavelengths; eval gives its colour");
@@ -356,7 +356,7 @@ void BindEvaluation(nb::class_<Material>* material) {
 }  // namespace
 
 NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param): nanobind's
-  nb::set_leak_warnings(false);  // of objects that live when the interpreter ends
+  nb::set_leak_warnings(false);  // objects may live when the interpreter ends
   nb::exception<Error>(m, "Error", PyExc_ValueError).doc() =
       "Bad input or an impossible request. Its text is one line: what is wrong, where, what to do.";
   nb::class_<Material> material(m, "Material", "A model file, prepared for evaluation.");

@@ -40,13 +40,13 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// What the thread that fits tells the one that waits for it, and is told.
+// State shared by the thread that fits and the one that waits for it.
 class RunningFit {
  public:
   void Stop() { stopped_ = true; }
   bool stopped() const { return stopped_; }
 
-  // From its beginning on, a fit ends when the limit is passed.
+  // A fit that has begun ends when the limit is passed.
   void Begin() { begun_ = true; }
   void Limit(double seconds) { limit_ = seconds; }
   bool IsToEnd() const { return stopped_ || (begun_ && since_.Seconds() >= limit_); }
@@ -154,7 +154,7 @@ OptionValue ValueOf(const nb::dict& options, const std::string& name, const Opti
       like);
 }
 
-// What is given for the solver, by the names of the program's flags. Throws Error for what this
+// Values given for the solver, by the names of the program's flags. Throws Error for what this
 // solver does not read.
 std::vector<std::pair<const SolverOption*, OptionValue>> SolverValues(const SolverEntry& solver,
                                                                       const nb::dict& given) {
@@ -182,7 +182,7 @@ std::vector<std::pair<const SolverOption*, OptionValue>> SolverValues(const Solv
 SolverOptions MakeOptions(const std::vector<std::pair<const SolverOption*, OptionValue>>& given,
                           const SolverEntry& solver, uint64_t seed, const ModelSpec& spec) {
   SolverOptions options;
-  // Of flags that are no members, the default may depend on the form.
+  // Defaults of flags that are no members may depend on the form.
   for (const SolverOption* const option : OptionsReadBy(solver.options)) {
     if (option->help.empty()) continue;
     std::optional<OptionValue> value;

@@ -94,14 +94,14 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
 
 NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
   nb::set_leak_warnings(false);
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres Solver would log is in the reports
+  FLAGS_minloglevel = google::GLOG_FATAL;  // the reports have what Ceres Solver would log
   gflags::SetVersionString(TRILOBE_VERSION);
   nb::register_exception_translator(
       [](const std::exception_ptr& exception, void* /*payload*/) {
         try {
           std::rethrow_exception(exception);
         } catch (const Error& error) {
-          // Not before it is needed, so that the module can be loaded without the package.
+          // Imported only when needed, so that the module can be loaded without the package.
           const nb::object type = nb::module_::import_("trilobe._core").attr("Error");
           PyErr_SetString(type.ptr(), error.what());
         }

@@ -86,7 +86,7 @@ Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
   return {.data = std::make_shared<const Measurement>(std::move(measurement))};
 }
 
-// What is valid stays 0; the others are the keys of ReasonsOf, from 1 on.
+// Valid samples have 0; the other numbers are those of ReasonsOf's keys, from 1 on.
 std::vector<std::string> ReasonNames() {
   std::vector<std::string> names = {"valid"};
   for (const LeftOut& left_out : ReasonsOf({})) names.push_back(left_out.key);
@@ -186,7 +186,7 @@ ConvertOptions ConvertOptionsOf(const nb::dict& options) {
 // Lines that say what was written.
 using Lines = std::vector<std::string>;
 
-// What `trilobe convert` writes, of a model file's text or of a measurement.
+// Writes as `trilobe convert` does, from a model file's text or a measurement.
 Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const NamedValues& given) {
   const ModelFile file = ParseModel({model_text.c_str(), model_text.size()}, "the model");
   const ConvertOptions options = ConvertOptionsOf(given);

@@ -1,4 +1,4 @@
-"""What arrays of others become before C++ sees them."""
+"""Conversion of arrays of others before C++ sees them."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def check_width(array: Floats, name: str, width: int, what: str) -> None:
 
 
 def common_shape(*arrays: Floats) -> tuple[int, ...]:
-    """What the shapes without their last axes broadcast to."""
+    """The shape to which the shapes without their last axes broadcast."""
     try:
         return np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
     except ValueError:

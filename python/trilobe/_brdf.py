@@ -27,7 +27,7 @@ CHANNELS = ("red", "green", "blue")
 _OTHER_FORMATS = (
     ".binary", ".bin", ".csv", ".bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".glsl", ".hlsl",
 )
-_ALBEDO_ERROR = 0.03  # of Brdf.albedo, up to 85 degrees
+_ALBEDO_ERROR = 0.03  # error of Brdf.albedo, up to 85 degrees
 _POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
 _AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
 
@@ -127,7 +127,7 @@ class Brdf:
                 stacklevel=3,
             )
 
-    # What it evaluates.
+    # Evaluation.
 
     def eval(self, wi: Any, wo: Any, *, components: bool = False) -> Floats:
         """The BRDF f [1/sr], without a cosine.
@@ -229,11 +229,11 @@ class Brdf:
         wi = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
         return self.albedo(wi)
 
-    # What it is made of.
+    # Form and parameters.
 
     @property
     def lobes(self) -> int:
-        """How many specular lobes there are."""
+        """The number of specular lobes."""
         return self._material.lobes
 
     @property
@@ -273,7 +273,7 @@ class Brdf:
         return self._table("G")
 
     def unobserved(self, factor: str) -> NDArray[np.bool_]:
-        """Which entries of "D", "F" or "G" no sample of the fit has touched, in the table's shape."""
+        """Marks entries of "D", "F" or "G" that no sample of the fit has touched, in the table's shape."""
         if not isinstance(factor, str) or factor not in _AXIS:
             raise Error(f"there is no factor {' '.join(repr(factor).split())[:60]}; there are D, F and G")
         marks: NDArray[np.bool_] = self._material.unobserved(factor).astype(bool)
@@ -281,7 +281,7 @@ class Brdf:
 
     @property
     def fit(self) -> dict[str, Any]:
-        """How the model came about, as its file says; empty of one that was made of arrays."""
+        """The origin of the model, as its file says; empty for one that was made of arrays."""
         fit = json.loads(self._text).get("fit", {})
         return fit if isinstance(fit, dict) else {}
 
@@ -349,7 +349,7 @@ class Brdf:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        """What it is, in short."""
+        """A short description."""
         kind = "anisotropic" if self.anisotropic else "isotropic"
         return f"<trilobe.Brdf: {kind}, {self.lobes} lobes>"
 
@@ -384,7 +384,7 @@ def load(path: str | os.PathLike[str]) -> Brdf:
 
 
 def materials() -> list[str]:
-    """What "material:NAME" may name: fitted models that come with the package (materials/README.md)."""
+    """Names for "material:NAME": fitted models that come with the package (materials/README.md)."""
     return list(_core.material_names())
 
 
@@ -455,7 +455,7 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
         reason = getattr(error, "strerror", None) or str(error)
-        if os.path.isdir(name):  # of which "." is busy
+        if os.path.isdir(name):  # "." is reported as busy
             reason = "it is a folder; give the name of a file"
         raise Error(f"cannot write {printable(name)}: {reason}") from None
 
@@ -481,7 +481,7 @@ def _frozen(table: Table) -> Table:
     return table
 
 
-# From arrays to the text of a model file, which C++ checks and reads.
+# Conversion of arrays to the text of a model file, which C++ checks and reads.
 
 
 def _text_of(
@@ -553,7 +553,7 @@ def _axis_of(
             "per_lobe": name != "F",
             "per_channel": name == "F",
         }
-    if lobes == 0:  # of whose tables a file has none
+    if lobes == 0:  # a file has no tables then
         return np.empty(0), axis
     shape: tuple[int, ...] = (lobes,) if axis["per_lobe"] else ()
     if axis["per_channel"]:
@@ -576,7 +576,7 @@ def _axis_by_names(name: str, table: Table) -> dict[str, Any]:
         if theta not in table.coords:
             raise Error(f"{name} needs coords[{theta!r}], where its rows stand in radians")
         axis["rule"] = "polar"
-        # To the nearest of the numbers that people write, as 15 degrees.
+        # Rounds to numbers that people write, such as 15 degrees.
         axis["theta_nodes"] = np.degrees(as_array(table.coords[theta], theta)).round(12).tolist()
         axis["phi_nodes"] = table.shape[-1]
     elif last != _AXIS[name]:

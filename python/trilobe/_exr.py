@@ -25,7 +25,7 @@ Picture = NDArray[np.float32]
 def _header(width: int, height: int, channels: int) -> bytes:
     """All before the lines: attributes, and where each line begins."""
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    # Of each channel: its name, 2 for float32, not linear to the eye, and a sample a pixel.
+    # Entry of each channel: name, 2 for float32, not linear to the eye, and one sample per pixel.
     listed = b"".join(
         name.encode() + b"\0" + struct.pack("<i4x2i", 2, 1, 1) for name in _CHANNELS[channels]
     )
@@ -96,6 +96,6 @@ def read(path: Path, height: int, width: int, channels: int) -> Picture:
 
 
 def _pixels(lines: NDArray[Any]) -> Picture:
-    """Of lines of which each has channel after channel, blue first."""
+    """Pixels (height, width, channels) of lines that hold channel after channel, blue first."""
     pixels: Picture = lines["values"].transpose(0, 2, 1)[..., ::-1]
     return pixels

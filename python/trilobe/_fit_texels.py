@@ -99,7 +99,7 @@ def fit_texels(
 
 
 class _Fit:
-    """What is to be fitted."""
+    """A fit of texels that is to be made: its problem, values, materials and options."""
 
     def __init__(
         self, problem: Problem, source: Source, shared: int | list[Brdf], options: dict[str, Any], progress: bool
@@ -120,7 +120,7 @@ class _Fit:
         return about.texels(materials, about.split(np.concatenate([empty, *tiles])))
 
     def in_folder(self, folder: Path, shard: Any) -> Texels | None:
-        """Those of a shard, or all and their pictures."""
+        """Fits texels into a folder: those of a shard, or all and their pictures."""
         import shutil
 
         tiles, about = self._source.tiles(), self._about(self._hash())
@@ -151,7 +151,7 @@ class _Fit:
         return About(self._source.shape, count, self._problem.options["coloured"], of)
 
     def _hash(self) -> str:
-        """Of all that results depend on; of the values a few."""
+        """Hash of all that results depend on; of the values a few."""
         import hashlib
 
         shared, problem = self._shared, self._problem
@@ -169,7 +169,7 @@ class _Fit:
         return find(self._problem, self._source.spread(_LOOKED_AT), self._shared, options)
 
     def _kept_materials(self, folder: Path) -> list[Brdf]:
-        """Those of a folder; if there is none, it is made. Of shards that do so at once, the first decides."""
+        """Materials of a folder, which is made if need be; of shards that make it at once, the first decides."""
         import shutil
         import tempfile
 
@@ -193,7 +193,7 @@ class _Fit:
         return np.stack([self._problem.lobes(material) for material in materials])
 
     def _tile(self, rows: tuple[int, int], lobes: Vector) -> Tile:
-        """Of each texel d, error and strengths."""
+        """d, error and strengths of each texel, side by side."""
         solved = self._problem.solve(lobes, self._source.read(*rows))
         s = solved.s if self._problem.options["coloured"] else solved.s[..., :1]
         strengths = [s[:, k] for k in range(s.shape[1])]

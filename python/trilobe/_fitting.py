@@ -196,7 +196,7 @@ def score(
 
 
 class LobeMatch(NamedTuple):
-    """How far two models have the same lobes, as `match_lobes` returns it."""
+    """The likeness of two models' lobes, as `match_lobes` returns it."""
 
     agreement: float
     """The mean match of all lobes of both, weighted by the light that they reflect; 1: the same."""
@@ -213,7 +213,7 @@ def match_lobes(reference: Brdf | str | os.PathLike[str], model: Brdf | str | os
 
 
 class Solver(NamedTuple):
-    """What can be said of a solver."""
+    """Description of a solver."""
 
     name: str
     description: str
@@ -239,7 +239,7 @@ def weightings() -> dict[str, str]:
 
 
 def synthetic_materials() -> list[str]:
-    """What "synth:NAME" may name."""
+    """Names for "synth:NAME"."""
     return list(fits().synthetic_materials())
 
 

@@ -33,7 +33,7 @@ def fits() -> Any:
 
 
 class Measurement:
-    """What was measured of a material: a table on a grid of half-vector angles, or scattered samples.
+    """Measured values of a material: a table on a grid of half-vector angles, or scattered samples.
 
     Args:
         wi: directions towards the light (n, 3), away from the surface, z along its normal; any length.
@@ -150,7 +150,7 @@ class Measurement:
         return pandas.DataFrame({**self._angles(), **colours, "reason": reason})
 
     def _angles(self) -> dict[str, NDArray[np.float64]]:
-        """By name, of all of them [rad]."""
+        """Angles of all samples by name [rad]."""
         angles: dict[str, NDArray[np.float64]] = {}
         for end, w in (("i", self.wi), ("o", self.wo)):
             angles[f"theta_{end}"] = np.arctan2(np.hypot(w[:, 0], w[:, 1]), w[:, 2])
@@ -164,7 +164,7 @@ class Measurement:
 
     @property
     def kind(self) -> str:
-        """What it is, as "MERL measurement"."""
+        """The kind of measurement, such as "MERL measurement"."""
         return str(self._data.kind)
 
     @property
@@ -174,12 +174,12 @@ class Measurement:
 
     @property
     def grid(self) -> tuple[int, int, int] | None:
-        """Of a table, how many bins there are of theta_h, theta_d and phi_d; None of scattered samples."""
+        """The numbers of bins of theta_h, theta_d and phi_d that a table has; None for scattered samples."""
         return tuple(self._data.grid) or None
 
     @property
     def notes(self) -> list[str]:
-        """What looks wrong in the data, a sentence each."""
+        """Anomalies of the data, a sentence each."""
         return list(self._data.notes)
 
     @property
@@ -189,7 +189,7 @@ class Measurement:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many samples there were, how many are valid, and why the others are not."""
+        """The numbers of all samples, of valid ones, and of others by reason."""
         counts: dict[str, int] = json.loads(self._data.counts_json)
         return counts
 
@@ -218,13 +218,13 @@ class Measurement:
 
     @property
     def reasons(self) -> list[str]:
-        """What the numbers of `reason` stand for."""
+        """Names of the numbers in `reason`."""
         names: list[str] = fits().reasons()
         return names
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """Which of them a fit sees, (n,)."""
+        """Whether a fit sees a sample, (n,)."""
         return self._cached("valid", lambda: np.asarray(self.reason == 0))
 
     def _cached(self, name: str, make: Callable[[], NDArray[Any]]) -> NDArray[Any]:
@@ -235,7 +235,7 @@ class Measurement:
         return self._cache[name]
 
     def __repr__(self) -> str:
-        """What it is, in short."""
+        """A short description."""
         counts = self.counts
         return f"<trilobe.Measurement {self.source}: {self.kind}, {counts['valid']} of {counts['total']} valid>"
 
@@ -326,7 +326,7 @@ def read(
 
 
 def _read_again(path: str, options: dict[str, Any], xxh128: str) -> Measurement:
-    """What a pickle has of a file."""
+    """Unpickles a measurement that was read from a file."""
     data = fits().read(path, options)
     if data.xxh128 != xxh128:
         raise Error(f"{path} has changed since the measurement was pickled; read it again")
@@ -334,7 +334,7 @@ def _read_again(path: str, options: dict[str, Any], xxh128: str) -> Measurement:
 
 
 def _of_arrays(*made: Any) -> Measurement:
-    """What a pickle has of arrays."""
+    """Unpickles a measurement that was made of arrays."""
     return Measurement._of(fits().from_arrays(*made), (_of_arrays, made))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from trilobe._brdf import Brdf
 from trilobe._renderer import dr, mi
 
-_STEPS = 89  # of theta_i, a degree each; constant beyond
+_STEPS = 89  # in theta_i, a degree each; constant beyond
 
 
 class Albedo:

@@ -28,7 +28,7 @@ def half_difference(wi: Any, wo: Any) -> tuple[Any, Any, Any]:
 
 
 def _circular(coordinate: Any, size: int) -> list[tuple[Any, Any]]:
-    """Between entries 0 to size - 1 of a circle, the coordinate from -1 to size."""
+    """Entries and weights of linear interpolation on a circle of `size` entries, for coordinates from -1 to size."""
     x = coordinate + size
     low = mi.UInt32(x)
     t = x - mi.Float(low)

@@ -1,4 +1,4 @@
-"""How half vectors are drawn in compiled variants of Mitsuba."""
+"""Sampling of half vectors in compiled variants of Mitsuba."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from trilobe._brdf import Brdf
 from trilobe._mitsuba_tables import turns
 from trilobe._renderer import dr, mi
 
-# Of the half vectors, so much is drawn by the cosine, lest something between the nodes be missed.
+# Share of half vectors drawn by the cosine, lest something between the nodes be missed.
 _COSINE_SHARE = 0.01
 
 
@@ -33,7 +33,7 @@ class Nodes:
         self._guide = mi.UInt32(np.clip(begin, 0, self._last).astype(np.uint32))
 
     def interval(self, x: Any, coordinate: Any, active: Any = True) -> tuple[Any, Any, Any]:
-        """Between which nodes x lies: the first of them, its value, and their distance."""
+        """The nodes between which x lies: the first of them, its value, and their distance."""
         low = dr.gather(mi.UInt32, self._guide, mi.UInt32(dr.clip(coordinate, 0, 1) * self.BINS), active)
         above = dr.gather(mi.Float, self._values, low + 1, active)
         low = dr.select((above <= x) & (low < self._last), low + 1, low)
@@ -83,7 +83,7 @@ class Sampling:
         self._theta_i = Nodes(table["theta_i"], table["theta_i"] * (2 / np.pi))
 
     def incident(self, wi: Any) -> Any:
-        """What is drawn for wi.
+        """The distribution to draw from for wi.
 
         Nodes with weights and integrals, the sum of these, the largest y, sin theta_i, and how often the cosine is.
         """

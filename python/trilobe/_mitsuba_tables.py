@@ -14,7 +14,7 @@ class Columns:
     """Tables side by side, four an array, so that those that are read together are one load."""
 
     def __init__(self, count: int, size: int, extra: Any = None) -> None:
-        """Of so many tables of so many entries; `extra` is one more, that never changes."""
+        """Makes `count` tables of `size` entries; `extra` is one more, that never changes."""
         self.count = count
         self._size = size
         self._indices: list[Any] = []
@@ -51,7 +51,7 @@ def mix(columns: Columns, places: list[tuple[Any, Any]], active: Any) -> list[An
 
 
 def linear(coordinate: Any, size: int) -> list[tuple[Any, Any]]:
-    """Between the centres of bins of unit width, constant beyond the outer ones."""
+    """Entries and weights of linear interpolation between the centres of bins of unit width, constant beyond."""
     x = dr.clip(coordinate - 0.5, 0, size - 1)
     low = dr.minimum(mi.UInt32(x), max(size - 2, 0))
     t = x - mi.Float(low)
@@ -91,7 +91,7 @@ class Tables:
         for name, axis in self._axes.items():
             size, count = axis["size"], self._count(axis)
             if axis["rule"] == "spline":
-                # With one node more on each side, and the cosines that are splined, too (docs/model.md).
+                # Splines have one node more on each side; the cosines are splined likewise (docs/model.md).
                 cosines = np.cos((np.arange(size) + 0.5) * np.pi / 2 / size)
                 ends = (2 * cosines[0] - cosines[1], 2 * cosines[-1] - cosines[-2])
                 self._columns[name] = Columns(count, size + 2, [ends[0], *cosines, ends[1]])

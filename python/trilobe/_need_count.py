@@ -21,7 +21,7 @@ _PATHS_AT_ONCE = 1 << 22
 
 
 class Counts(NamedTuple):
-    """What was read of a material, by what it adds to the picture; the sum over materials and directions is 1."""
+    """Reads of a material, by what they add to the picture; the sum over materials and directions is 1."""
 
     bins: NDArray[np.float64]
     """Over (theta_h, theta_d, phi_d), as MERL's bins lie."""
@@ -30,7 +30,7 @@ class Counts(NamedTuple):
 
 
 class _Places:
-    """Where in one flat array a pair of directions of a material counts."""
+    """Indices into one flat array at which a material's pairs of directions count."""
 
     def __init__(self, shapes: list[tuple[int, int, int]]) -> None:
         self.shapes = shapes
@@ -77,7 +77,7 @@ class Counter:
         return total.reshape(self.height, self.width, 3) / spp
 
     def count(self, picture: NDArray[np.float64], spp: int, seed: int) -> list[Counts]:
-        """What each material was read for. `picture`: beyond its white, more light adds nothing that is seen."""
+        """Counts what each material is read for. `picture`: beyond its white, more light adds nothing that is seen."""
         light = picture @ [0.2126, 0.7152, 0.0722]
         white = max(float(np.quantile(light, 0.98)), 1e-12)
         weight = mi.Float((1 / np.maximum(light, white)).ravel().astype(np.float32))
@@ -151,7 +151,7 @@ class Counter:
             direct = dr.select(lit, throughput * mis_lamp * value * lamp_weight, 0)
             result += direct
             left -= direct
-            # And on.
+            # The path goes on.
             drawn, drawn_weight = bsdf.sample(context, si, sampler.next_1d(), sampler.next_2d(), go_on)
             if dr.hint(light is not None, mode="scalar"):
                 behind = si.wi.z < 0

@@ -20,7 +20,7 @@ _TITLES = {"measured": "as given", "full": "full models", "pruned": "pruned mode
 
 
 def totals(rows: list[dict[str, Any]], render_seconds: dict[str, float]) -> dict[str, Any]:
-    """Of all materials; those that are never read have no samples."""
+    """Totals over all materials; those that are never read have no samples."""
     samples = [row["samples"] for row in rows if "samples" in row]
     kinds = ("full", "pruned")
     parameters = {kind: sum(row["parameters"][kind] for row in rows) for kind in kinds}
@@ -34,7 +34,7 @@ def totals(rows: list[dict[str, Any]], render_seconds: dict[str, float]) -> dict
 
 
 def left_text(totals: dict[str, Any]) -> str:
-    """What is left, of what, and what it took."""
+    """A sentence on the parameters that are left, the share of data used, and the time it took."""
     parameters, samples, fitted, rendered = (
         totals[key] for key in ("parameters", "samples", "fit_seconds", "render_seconds"))
     share = 100 * samples["used"] / max(samples["valid"], 1)

@@ -46,7 +46,7 @@ def plan_of(
 
 
 def _progress(left: list[str], finished: int, seconds: float, expected: float) -> str:
-    """How far it is, as "3 of 10 materials after 20 s, about 47 s left for wall, floor and 5 more"."""
+    """The progress, such as "3 of 10 materials after 20 s, about 47 s left for wall, floor and 5 more"."""
     text = f"{finished} of {finished + len(left)} materials"
     if seconds > 0:
         text += f" after {seconds:.0f} s"

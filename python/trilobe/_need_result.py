@@ -1,4 +1,4 @@
-"""What `trilobe-need` has found so far: its pictures, how far they are apart, and the page that shows them."""
+"""Results of `trilobe-need` so far: its pictures, how far they are apart, and the page that shows them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Picture(NamedTuple):
 
 
 class Difference(NamedTuple):
-    """How far two pictures are apart."""
+    """The difference of two pictures."""
 
     flip: float
     delta_e: float
@@ -70,7 +70,7 @@ class Result:
         self.pictures: dict[str, Picture] = {}
         self.differences: dict[str, Difference] = {}
         self.tries: list[dict[str, Any]] = []
-        self.prune_seconds = 0.0  # of the last budget
+        self.prune_seconds = 0.0  # for the last budget
         self._out, self._scene, self._settings = out, scene, settings
         self._images: dict[str, NDArray[np.float32]] = {}
         self._white = 1.0  # the brightest 2 % of the first picture are beyond it
@@ -80,7 +80,7 @@ class Result:
         return self
 
     def __exit__(self, kind: object, *_: object) -> None:
-        """After an error or Ctrl-C the page says so."""
+        """Writes the page once more after an error or Ctrl-C, so that it says so."""
         if kind is not None:
             self._write_page(ended=True)
 
@@ -119,7 +119,7 @@ class Result:
         return report
 
     def report(self) -> dict[str, Any]:
-        """What there is so far."""
+        """The report on results so far."""
         seconds = {name: picture.seconds for name, picture in self.pictures.items()}
         return {
             "totals": totals(self.rows, seconds), "scene": self._scene, **self._settings,

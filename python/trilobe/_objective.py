@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 
 
 class Objective:
-    """What the solvers minimise, by the library's own sums: E(x) = |r(x)|^2 over x >= 0 (paper eq. 2).
+    """The objective of the solvers, by the library's own sums: E(x) = |r(x)|^2 over x >= 0 (paper eq. 2).
 
     x holds d, s and the tables of D, F and G of all lobes (docs/method.md). A residual is sqrt(w) (rho - rho*), three
     for each sample. rho is a multilinear function of x, so E has many minima, and scale can move between
@@ -151,5 +151,5 @@ class Objective:
         return np.ascontiguousarray(array)
 
     def __repr__(self) -> str:
-        """What E is of."""
+        """A short description."""
         return f"<trilobe.Objective: {self._source}, {self.num_samples} samples, {self.num_parameters} parameters>"

@@ -1,4 +1,4 @@
-"""What a fit has come to."""
+"""The result of a fit."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Record(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """What a fit minimised E of."""
+    """The data and weights of the E that a fit minimised."""
 
     measurement: Measurement | None
     weighting: str = "appearance"
@@ -54,7 +54,7 @@ class Problem(NamedTuple):
 
 
 class Result:
-    """What a fit has come to.
+    """The result of a fit.
 
     Attributes:
         model: the fitted `Brdf`, in canonical form.
@@ -96,7 +96,7 @@ class Result:
 
     @property
     def verdict(self) -> str:
-        """What a person would see of the model beside its measurement."""
+        """The visible difference between the model and its measurement, in words."""
         verdict: str = self.report["verdict"]["words"]
         return verdict
 

@@ -21,7 +21,7 @@ Callback = Callable[[Record, Brdf], Any]
 
 
 class Stop(Protocol):
-    """What another thread sets to end a fit, as threading.Event is."""
+    """A flag such as threading.Event, which another thread sets to end a fit."""
 
     def is_set(self) -> bool:
         """Whether the fit is to end."""
@@ -41,7 +41,7 @@ def run(
     module = fits()
     running = module.RunningFit()
     ended: dict[str, Any] = {}
-    done = threading.Event()  # as join() forgets the thread when Ctrl-C ends it
+    done = threading.Event()  # join() forgets the thread when Ctrl-C ends it
     asked: queue.Queue[tuple[Any, bytes]] = queue.Queue()
     answers: queue.Queue[bool] = queue.Queue()
     left = threading.Event()
@@ -122,7 +122,7 @@ class _Bar:
             self._bar = tqdm(desc=f"fit {os.path.basename(name)}", unit="it", leave=False)
 
     def show(self, count: int, iteration: int, seconds: float, objective: float) -> None:
-        """How many records there have been, and what the last one says."""
+        """Moves the bar to so many records, and shows the E of the last one."""
         if self._bar is not None and count > self._count:
             self._bar.set_postfix_str(f"E {objective:.4g}", refresh=False)
             self._bar.update(count - self._count)

@@ -17,11 +17,11 @@ Vector = NDArray[np.float64]
 
 _ALIKE = 64  # texels of which the first guess of a material is the mean
 _MOST_ROUNDS = 100
-_LITTLE = 1e-3  # by which share the error falls in a round that is worth another one
+_LITTLE = 1e-3  # relative fall of the error in a round that is worth another one
 
 
 class Solved(NamedTuple):
-    """Of texels d (n, 3), s (n, materials, 3), E (n,) and that of the black texel (n,)."""
+    """Solution for n texels: d (n, 3), s (n, materials, 3), E (n,) and that of the black texel (n,)."""
 
     d: Vector
     s: Vector
@@ -36,7 +36,7 @@ class Solved(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """What texels have in common, but for their materials."""
+    """Data and options that all texels share; their materials are apart."""
 
     wi: Vector
     wo: Vector
@@ -65,7 +65,7 @@ class Problem(NamedTuple):
 
 
 def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> list[Brdf]:
-    """So many materials of texels (n, samples, 3), by their values alone; in the end a model is fitted to each.
+    """Finds `count` materials of texels (n, samples, 3), by their values alone; in the end a model is fitted to each.
 
     The first guess of each is the mean of texels that those before explain least. Then, in turn, each becomes what
     fits best what the others and the diffuse terms leave of all texels.
@@ -98,7 +98,7 @@ def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> 
 
 
 def _values(d: Vector, s: Vector, lobes: Vector) -> Vector:
-    """Of texels, (n, samples, 3)."""
+    """Values of n texels, (n, samples, 3)."""
     values: Vector = d[:, None] + np.einsum("nbc,bjc->njc", s, lobes)
     return values
 
@@ -112,10 +112,10 @@ def _alike(rho: Vector, weights: Vector, solved: Solved, lobes: Vector) -> NDArr
 
 
 def _mean(rho: Vector, weights: Vector, s: Vector) -> Vector:
-    """What, times s (n, 3), comes nearest to the values (n, samples, 3): (samples, 3)."""
+    """The lobe (samples, 3) that, times s (n, 3), comes nearest to the values (n, samples, 3)."""
     counts = (weights * s[:, None] ** 2).sum(axis=0)
     mean: Vector = (weights * s[:, None] * rho).sum(axis=0) / np.maximum(counts, 1e-300)
-    # What all directions have in common is for the diffuse terms of texels, of which none is below 0.
+    # The part that all directions share belongs to the texels' diffuse terms, none of which is below 0.
     mean -= mean.min(axis=0)
     return mean
 

@@ -54,7 +54,7 @@ class Source:
         return np.ascontiguousarray(array.reshape(-1, self.samples, 3), np.float64)
 
     def spread(self, count: int) -> Vector:
-        """About so many texels, spread evenly."""
+        """Values of about `count` texels, spread evenly."""
         height, width = self.shape[0], self.shape[1] if len(self.shape) > 1 else 1
         if height * width == 0:
             raise Error("there is no texel")
@@ -69,7 +69,7 @@ def _spread(size: int, count: int) -> NDArray[np.int64]:
 
 
 def _shape_of(array: Any) -> tuple[int, ...]:
-    """() where it is none."""
+    """The shape of an array; () if it is none."""
     try:
         return tuple(int(length) for length in array.shape)
     except (TypeError, ValueError):

@@ -88,7 +88,7 @@ class Texels:
         about.save(name)
 
     def __repr__(self) -> str:
-        """How many there are, of how many materials."""
+        """A short description."""
         return f"<trilobe.Texels: {' x '.join(map(str, self.shape))}, {len(self.materials)} materials>"
 
 
@@ -114,7 +114,7 @@ def load_texels(folder: str | os.PathLike[str]) -> Texels:
 
 
 class About(NamedTuple):
-    """What a folder of texels holds, as its texels.json says."""
+    """Contents of a folder of texels, by its texels.json."""
 
     shape: tuple[int, ...]
     materials: int
@@ -134,7 +134,7 @@ class About(NamedTuple):
 
     @property
     def channels(self) -> int:
-        """Of all pictures."""
+        """The number of channels of all pictures together."""
         return sum(channels for _, channels in self.pictures())
 
     def split(self, values: NDArray[np.float32]) -> list[NDArray[np.float32]]:
@@ -142,7 +142,7 @@ class About(NamedTuple):
         return np.split(values, np.cumsum([channels for _, channels in self.pictures()])[:-1], axis=-1)
 
     def texels(self, materials: list[Brdf], pictures: list[NDArray[np.float32]]) -> Texels:
-        """Of pictures in any shape."""
+        """Texels from pictures in any shape."""
         d, error, *s = (values.reshape(*self.shape, values.shape[-1]) for values in pictures)
         return Texels(materials, d, [np.broadcast_to(values, (*self.shape, 3)) for values in s], error[..., 0])
 

@@ -14,8 +14,8 @@ from trilobe._objective import Objective
 from trilobe._result import Problem
 from trilobe._table import Table
 
-_MOST = 4000  # parameters, of which matrices are stored
-_RESOLVED = 1e-12  # of the largest eigenvalue, below which data say nothing
+_MOST = 4000  # most parameters, as matrices of them are stored
+_RESOLVED = 1e-12  # share of the largest eigenvalue, below which data say nothing
 
 Vector = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ class Uncertainty:
     G: Table
 
     def __repr__(self) -> str:
-        """How many numbers it is of, and how many of them the data say nothing on."""
+        """A short description."""
         return f"<trilobe.Uncertainty of {len(self.x)} parameters, {int(np.isinf(self.x).sum())} of them unknown>"
 
 
@@ -91,7 +91,7 @@ class _Steps:
         return whole
 
     def step(self, hessian: Vector, gradient: Vector) -> Vector:
-        """That of other sums of the same form. [n]."""
+        """The step for other sums of the same form. [n]."""
         whole = np.zeros(self._size)
         whole[self._free] = -self._unit * (self._inverted(hessian)[0] @ (self._unit * gradient[self._free]))
         return whole
@@ -100,7 +100,7 @@ class _Steps:
 def uncertainty(
     problem: Problem, model: Brdf, method: Any, replicates: Any, blocks: Any, seed: Any
 ) -> Uncertainty:
-    """What `Result.uncertainty` returns."""
+    """Computes `Result.uncertainty`."""
     if not isinstance(method, str) or method not in ("covariance", "bootstrap"):
         raise Error(f"unknown method {' '.join(repr(method).split())[:60]}; known: covariance, bootstrap")
     for name, value, least in (("replicates", replicates, 2), ("blocks", blocks, 1), ("seed", seed, 0)):
@@ -139,7 +139,7 @@ def _objective(problem: Problem, model: Brdf, counts: Vector | None) -> Objectiv
 
 
 def _drawn(problem: Problem, blocks: int, replicates: int, seed: int) -> Any:
-    """How often each valid sample is drawn, replicate by replicate: blocks are cells of theta_h and theta_d."""
+    """Counts of each valid sample, replicate by replicate: the blocks drawn are cells of theta_h and theta_d."""
     data = problem.measurement
     assert data is not None
     theta_h, theta_d = half_angles(data.wi[data.valid], data.wo[data.valid])

@@ -31,7 +31,7 @@ FORMAT = "blender-principled"
 
 
 def read(path: str | pathlib.Path) -> dict[str, Any]:
-    """What a file holds. Raises ValueError, with the file and what is wrong."""
+    """The content of a file. Raises ValueError, with the file and what is wrong."""
     try:
         content = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -119,12 +119,12 @@ def _add_to_menu(menu: Any, _: Any) -> None:
 
 
 def register() -> None:
-    """As Blender calls it when the add-on is switched on."""
+    """Called by Blender when the add-on is switched on."""
     bpy.utils.register_class(ImportTrilobe)
     bpy.types.TOPBAR_MT_file_import.append(_add_to_menu)
 
 
 def unregister() -> None:
-    """As Blender calls it when the add-on is switched off."""
+    """Called by Blender when the add-on is switched off."""
     bpy.types.TOPBAR_MT_file_import.remove(_add_to_menu)
     bpy.utils.unregister_class(ImportTrilobe)

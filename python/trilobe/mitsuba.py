@@ -55,7 +55,7 @@ _CLASSES: dict[str, Any] = {}
 
 
 def bsdf(brdf: Brdf | str | os.PathLike[str], **parameters: Any) -> dict[str, Any]:
-    """What `mi.load_dict` makes the material of, of a model, the path of one, or material:NAME."""
+    """The material's dictionary for `mi.load_dict`, from a model, the path of one, or material:NAME."""
     return {"type": "trilobe", "json": model_of(brdf).to_json(), **parameters}
 
 
@@ -102,7 +102,7 @@ def _define() -> Any:
                 self._fill()
 
         def _set_up(self, props: Any) -> None:
-            """What is drawn, and what the renderer has to know."""
+            """Sets the model to draw from, and the flags for the renderer."""
             other = load(_path_of(props, "sampling")) if "sampling" in props else None
             self._follows = bool(props.get("update_sampling", True)) and other is None
             self._drawn = other or self._brdf
@@ -147,7 +147,7 @@ def _define() -> Any:
                 if compiled and self._follows:
                     self._sampling = Sampling(self._brdf)
 
-        # What all variants share.
+        # Methods of all variants.
 
         def _spectrum(self, si: Any, colour: Any) -> Any:
             if self._colours is not None:

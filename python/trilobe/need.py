@@ -29,12 +29,12 @@ from trilobe._need_plan import Tell, plan_of
 from trilobe._need_result import Picture, Result
 
 _MERL = (90, 90, 180)
-_COVERAGE = 0.999  # of what is read; the directions of the rest are not used
+_COVERAGE = 0.999  # share of reads to cover; the directions of the rest are not used
 _KINDS = ("trilobe", "trilobe_measured")
 
 
 class Options(NamedTuple):
-    """How it is done; `main` has the defaults."""
+    """Options of a run; `main` has the defaults."""
 
     spp: int
     count_spp: int
@@ -80,7 +80,7 @@ class Material:
 
     @property
     def bytes(self) -> int | None:
-        """Of the file of the measurement."""
+        """The size of the measurement's file; None if there is no file."""
         return os.path.getsize(self.source) if os.path.isfile(self.source) else None
 
 
@@ -190,7 +190,7 @@ def _source_of(props: Any, folder: Path) -> str:
     return str((folder / source).resolve())
 
 
-# What the program reads.
+# Input of the program.
 
 
 def _directions(material: Material, counts: Any, folder: Path) -> dict[str, Any]:
@@ -209,7 +209,7 @@ def _directions(material: Material, counts: Any, folder: Path) -> dict[str, Any]
 
 
 def _smoothed(bins: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Between bins, each is read with its neighbours; and both sides of the plane of incidence are the same."""
+    """Spreads reads to neighbouring bins, as interpolation does; both sides of the plane of incidence are the same."""
     bins = (bins + bins[..., ::-1]) / 2
     for axis, ends in ((0, "edge"), (1, "edge"), (2, "wrap")):
         width = [(1, 1) if k == axis else (0, 0) for k in range(3)]
@@ -290,7 +290,7 @@ def need(path: Path, out: Path, options: Options, tell: Tell = print) -> dict[st
 
 
 def _count(file: SceneFile, out: Path, options: Options, result: Result, tell: Tell) -> list[Any]:
-    """What each material is read for."""
+    """Counts what each material is read for."""
     from trilobe._need_count import Counter
 
     result.tell("counting which directions are read")
@@ -347,7 +347,7 @@ def _bsdf(material: Material, kind: str, out: Path) -> dict[str, str]:
 
 
 def _row(material: Material) -> dict[str, Any]:
-    """What is said of a material, before anything is known of what the scene needs."""
+    """The entry of a material, before anything is known of what the scene needs."""
     return {
         "name": material.name, "source": os.path.basename(material.source), "share": 0.0,
         "measured_bytes": material.bytes, "parameters": {"full": 0, "pruned": 0},

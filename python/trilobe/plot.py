@@ -146,7 +146,7 @@ def _in_plane(measurement: Measurement, theta_i: float) -> tuple[NDArray[Any], N
     theta_o = np.arccos(np.clip(wo[:, 2], -1, 1))
     turn = np.arctan2(wo[:, 1], wo[:, 0]) - np.arctan2(wi[:, 1], wi[:, 0])
     if theta_i < width:
-        turn = np.zeros_like(turn)  # where there is no plane
+        turn = np.zeros_like(turn)  # there is no plane of incidence
     across = np.abs(np.sin(turn)) * np.sin(theta_o) < np.sin(width)
     signed = np.where(np.cos(turn) > 0, -theta_o, theta_o)
     if theta_i < width:

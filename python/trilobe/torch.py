@@ -164,7 +164,7 @@ def _at(table: Tensor, index: Tensor) -> Tensor:
 
 
 def _linear(table: Tensor, place: Tensor) -> Tensor:
-    """Between entries of unit distance, constant beyond the outer ones."""
+    """Interpolates between entries of unit distance, constant beyond the outer ones."""
     size = table.shape[-1]
     if size == 1:
         return _at(table, torch.zeros_like(place, dtype=torch.long))
@@ -198,7 +198,7 @@ class _Reader:
             self._tables[name] = tables[name].reshape(tables[name].shape[0], -1, max(size, 1))
 
     def value(self, wi: Tensor, wo: Tensor) -> Tensor:
-        """Of directions (texels, n, 3) above the surface: (texels, n, 3)."""
+        """rho (texels, n, 3) of directions (texels, n, 3) above the surface."""
         texels, n = wi.shape[:2]
         rho = self._d[:, None, :].expand(texels, n, 3)
         lobes = self._brdf.lobes
@@ -267,7 +267,7 @@ class _Reader:
         return at[0] * at[1], cosines[0] * cosines[1]
 
     def _polar(self, name: str, w: Tensor, theta: Tensor) -> Tensor:
-        """Between rings of theta and, around them, nodes of phi."""
+        """Interpolates between rings of theta and, around them, nodes of phi."""
         axis, table = self._axes[name], self._tables[name]
         rings = torch.tensor(axis["theta_nodes"], dtype=theta.dtype, device=theta.device)
         phis = axis["phi_nodes"]

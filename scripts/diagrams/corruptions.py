@@ -1,4 +1,4 @@
-"""What each kind of --corrupt does to a sphere, at four strengths, and what a fit makes of it."""
+"""A sphere under each kind of --corrupt, at four strengths, and the fits to it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from diagrams.fits import Folder, score, spheres, trilobe
 from diagrams.look import plt
 
 SOURCE = "synth:car-paint@30x30x60"
-# From unnoticeable to hopeless. The units are those of docs/robustness.md.
+# Strengths from unnoticeable to hopeless, in the units of docs/robustness.md.
 STRENGTHS = {
     "readings": {"noise": (0.05, 0.2, 0.5, 1), "dark": (0.01, 0.1, 1, 10), "photons": ("1e7", "1e6", "1e5", "1e4"),
                  "outliers": (0.001, 0.01, 0.05, 0.5), "spikes": (0.5, 0.333, 0.2, 0.13),
@@ -23,7 +23,7 @@ STRENGTHS = {
 }
 # These lose samples and change none. What is between the others is not measured: a clean one is beside the fit.
 LOSSES = ("gaps", "retro", "beyond", "side")
-SIDE, LEFT, GAP = 1.0, 1.05, 0.22  # of a sphere, of the names, of the line below, in inches
+SIDE, LEFT, GAP = 1.0, 1.05, 0.22  # widths of a sphere and the names, gap above the line below, in inches
 
 
 def _fitted(folder: Folder, corrupt: str) -> tuple[list[Any], str]:

@@ -15,7 +15,7 @@ from diagrams.look import BLUE, GREEN, GREY, RGB, SKY, VERMILION, plt
 from PIL import Image
 
 Folder = pathlib.Path
-SIDE = 200  # of a sphere, in pixels
+SIDE = 200  # width of a sphere in pixels
 
 
 def trilobe(folder: Folder, *words: str) -> None:
@@ -63,7 +63,7 @@ def row_of(pictures: list[tuple[str, np.ndarray]], columns: int, size: float = 2
 
 
 def few_samples(folder: Folder, whole: str) -> Any:
-    """What ever fewer of a table's bins come to, with the prior and without."""
+    """Fits to ever fewer of a table's bins, with the prior and without."""
     seen = "--max_angle=80"
     counts, looks = [], {"few": [], "bare": []}
     for missing in (0.99, 0.997, 0.999, 0.9997, 0.9999):

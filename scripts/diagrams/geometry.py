@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from diagrams.look import BLUE, GREEN, GREY, ORANGE, PURPLE, RGB, ROOT, SKY, VERMILION, arrow, bare, plt
 
-MATERIAL = "paper_white"  # of the library, of the paper's sharing
+MATERIAL = "paper_white"  # in the library, with the paper's sharing
 
 
 def seen(point: Any) -> np.ndarray:
@@ -19,13 +19,13 @@ def seen(point: Any) -> np.ndarray:
 
 
 def direction(theta: float, phi: float) -> np.ndarray:
-    """Of polar angles in degrees."""
+    """The unit vector of polar angles in degrees."""
     t, p = np.radians([theta, phi])
     return np.array([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)])
 
 
 def arc(axes: Any, one: np.ndarray, other: np.ndarray, radius: float, text: str, color: str, push: float) -> None:
-    """Of the angle between two unit vectors, with its name in its middle."""
+    """Draws the angle between two unit vectors as an arc, with its name in its middle."""
     angle = np.arccos(one @ other)
     t = np.linspace(0, 1, 30)[:, None]
     points = radius * (np.sin((1 - t) * angle) * one + np.sin(t * angle) * other) / np.sin(angle)
@@ -79,7 +79,7 @@ def facets(axes: Any) -> None:
 
 
 def meanings(axes: Any) -> None:
-    """What each factor counts, in three sketches side by side."""
+    """Draws the meaning of each factor, in three sketches side by side."""
     bare(axes, 27.5, 4.6)
     titles = ("D(θh): how many mirrors lean towards h", "F(θd): how much a mirror reflects",
               "G(θi) G(θo): how much nothing hides")

@@ -1,4 +1,4 @@
-"""What all diagrams of the pages share: the look of the experiments' pictures, arrows, arcs and boxes."""
+"""Shared look of the pages' diagrams: that of the experiments' pictures, arrows, arcs and boxes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def bare(axes: Any, width: float, height: float) -> None:
 
 
 def arrow(axes: Any, start: Any, end: Any, color: str = "#404040", **style: Any) -> None:
-    """From one point to another."""
+    """Draws an arrow from one point to another."""
     how = {"arrowstyle": "-|>", "color": color, "lw": 1.6, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11, **style}
     axes.annotate("", xy=tuple(end), xytext=tuple(start), arrowprops=how)
 
@@ -54,7 +54,7 @@ def table_of(page: str, first: str) -> list[list[str]]:
 
 
 def save(figure: Any, path: pathlib.Path, colors: int = 96) -> None:
-    """With a palette, which is a third of the size; photographs, by colors=0, without."""
+    """Saves a figure with a palette, which is a third of the size; photographs, by colors=0, without."""
     from PIL import Image
 
     figure.canvas.draw()

@@ -11,7 +11,7 @@ from diagrams.look import BLUE, GREEN, GREY, ORANGE, ROOT, SKY, VERMILION, arrow
 
 
 def parts() -> Any:
-    """What is built of what, and the packages that it needs."""
+    """The parts of the build, how they contain each other, and the packages that they need."""
     figure, axes = plt.subplots(figsize=(9.6, 3.9))
     bare(axes, 19.2, 7.8)
     top = {"va": "top", "linespacing": 1.4}
@@ -35,7 +35,7 @@ def parts() -> Any:
 
 
 def solver() -> Any:
-    """Who calls whom when a solver runs."""
+    """The calls between caller, solver and library when a solver runs."""
     figure, axes = plt.subplots(figsize=(9.6, 3.6))
     bare(axes, 19.2, 7.2)
     box(axes, (0.2, 4.5), (3.4, 2.2), "the caller\n\nSolve(objective,\noptions, model)")
@@ -63,7 +63,7 @@ def solver() -> Any:
 
 
 def on_disk() -> Any:
-    """Which files lie in the folder of a fit at each time, and what a signal does then."""
+    """The files in the folder of a fit at each time, and the effect of a signal then."""
     figure, axes = plt.subplots(figsize=(9.6, 3.4))
     bare(axes, 19.2, 6.8)
     phases = (("read", 2.4), ("solve", 4.4), ("finish", 2.6), ("score", 2.0), ("draw", 2.4))
@@ -101,7 +101,7 @@ def milliseconds(cell: str) -> float:
 
 
 def cost() -> Any:
-    """What passes cost, of the page's own table, and how the time of measured fits is spent."""
+    """The cost of passes, from the page's own table, and how measured fits spend their time."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.3), width_ratios=[1, 1.25])
     named = {"E over all samples": "E", "E over all samples, the reference": "E, the reference",
              "one `awls` sweep, E for the trace included": "a sweep of awls",

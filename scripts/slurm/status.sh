@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What has become of a Slurm job, in snakemake's words: scripts/slurm/status.sh JOB prints running,
-# success or failed. A job that was killed cannot say so itself. Needs no accounting: the controller
-# knows a job until MinJobAge (five minutes) after its end.
+# State of a Slurm job, in snakemake's words: scripts/slurm/status.sh JOB prints running, success or failed. A job that
+# was killed cannot say so itself. Needs no accounting: the controller knows a job until MinJobAge (five minutes) after
+# its end.
 set -uo pipefail
 
 job=${1%%;*} # sbatch --parsable may add the cluster's name

@@ -123,7 +123,7 @@ TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   for (int k = 1; k < 70; ++k) EXPECT_NEAR(at(k), at(k - 1), 0.1 * most) << k;
 }
 
-// Where six theta were measured, what D and F are between them is the prior's.
+// Between the six measured theta, only the prior determines D and F.
 TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
   const auto psnr_from_formula = [&](const char* prior) {
     const ProgramResult fit =

@@ -104,7 +104,7 @@ TEST(SolversTest, ListsTheDefaultFirst) {
   }
 }
 
-// Also that every option that a solver reads has a flag.
+// Every option that a solver reads has a flag.
 TEST(SolversTest, DescribesEach) {
   for (const SolverEntry& solver : Solvers()) {
     const ProgramResult one = RunProgram({"solvers", solver.name});
@@ -183,7 +183,7 @@ TEST(ProgramTest, FitsFilesOfAnyName) {
   }
 }
 
-// Whatever a name holds, it neither breaks the line nor steers the terminal.
+// Control characters in names neither break the line nor steer the terminal.
 TEST(ProgramTest, ShowsNamesInPrintableForm) {
   const TemporaryFolder folder;
   const std::string name = "a\nb\x1b[31m";
@@ -375,8 +375,8 @@ TEST(ConvertTest, WritesStandardMaterials) {
   if (!kSanitized) {
     EXPECT_THAT(Contents(folder / "x.png"), testing::StartsWith("\x89PNG"));
   }
-  // Of a measurement, to a model of it. That of a mat material may be half a metal's, as nothing of
-  // it glitters; a plastic's is none.
+  // A measurement is fitted first. Plastic becomes a dielectric; for a matt material `Metallic` may
+  // be 0.5, since nothing of it glitters.
   const ProgramResult blender =
       RunProgram({"convert", "synth:plastic@20x20x40", "--out=" + (folder / "x.principled.json")});
   EXPECT_EQ(blender.status, 0) << blender.err;
@@ -445,7 +445,7 @@ TEST(ConvertTest, WritesFilesOfOpticalDesign) {
               "--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf");
 }
 
-// What info prints of scattered samples, and convert makes of them, is the same for each format.
+// `info` and `convert` treat scattered samples alike in every format.
 const char kCsv[] =
     "theta_i,phi_i,theta_o,phi_o,r,g,b\n# a comment\n"
     "10,0,70,0,1,2,3\n70,0,10,0,1,2,3.3\n10,0,20,0,4,5,6\n10,0,20,0,-1,5,6\n";
@@ -465,7 +465,7 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   EXPECT_EQ(read["samples"]["valid"], table["bins"]["valid"]);
   EXPECT_EQ(read["min"], table["min"]);
   EXPECT_EQ(read["max"], table["max"]);
-  // From CSV to CSV, all of it or a part.
+  // CSV is converted to CSV, all of it or a part.
   EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy}).status, 0);
   json again = json::parse(RunProgram({"info", copy, "--json"}).out);
   EXPECT_EQ(again["samples"], read["samples"]);
@@ -473,7 +473,7 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy, "--max_angle=10"}).status, 0);
   again = json::parse(RunProgram({"info", copy, "--json"}).out);
   EXPECT_LT(again["samples"]["valid"], read["samples"]["valid"]);
-  // And from a model.
+  // A model is converted to CSV, too.
   Write(folder / "model.json", kLambertianModel);
   const ProgramResult model = RunProgram(
       {"convert", folder / "model.json", "--max_angle=5", "--out=" + (folder / "model.CSV")});
@@ -642,7 +642,7 @@ TEST(DataNotes, TellOfADetectorInItsOwnLight) {
   }
 }
 
-// By another light, and as a picture.
+// `score` renders under another light, and writes pictures.
 TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);

@@ -31,14 +31,14 @@ using ::testing::StartsWith;
 
 nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
 
-// What followed the solver, in order.
+// Names of the steps that followed the solver, in order.
 std::vector<std::string> StepsOf(const nlohmann::json& report) {
   std::vector<std::string> names;
   for (const auto& step : report["finishing"]) names.push_back(step["step"]);
   return names;
 }
 
-// Of few bins, which is as good for most and takes a tenth of the time.
+// Arguments of a fit to few bins, which serve most tests and take a tenth of the time.
 std::vector<std::string> Fit(const std::string& out, const std::vector<std::string>& more = {},
                              const std::string& source = "synth:plastic@30x30x60") {
   std::vector<std::string> arguments = {"fit",           source,          "--noise=0.02",
@@ -161,7 +161,7 @@ TEST(Fit, SaysItsVerdictFirstInFewLines) {
   EXPECT_EQ(scored["places"], verdict["places"]);
 }
 
-// What was printed of it, in hundredths of a second; and the report's own.
+// The printed parts, in hundredths of a second, sum to the total, and so do the report's.
 TEST(Fit, SecondsSumToTheTotal) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
@@ -181,7 +181,7 @@ TEST(Fit, SecondsSumToTheTotal) {
   for (const auto& [name, part] : seconds.items()) {
     reported += part.get<double>();
   }
-  EXPECT_NEAR(total, reported, 0.05);  // of some ten parts, rounded
+  EXPECT_NEAR(total, reported, 0.05);  // about ten parts, rounded
 }
 
 TEST(Fit, SaysWhatItLeftOutAndWhy) {
@@ -307,7 +307,7 @@ TEST(Fit, TellsWhatTheMeasurementLacksOfReciprocityWhereThatIsMuch) {
 TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  // So that there is little to do, and an edge of the data.
+  // The flags make a quick fit with an edge of the data.
   const ProgramResult result =
       RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_parameters=150",
                   "--max_iterations=2", "--lobes=1", "--max_angle=40", "--noise=0.02", "--verbose",
@@ -326,7 +326,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   EXPECT_GT(report["seconds"]["finish"], 0);
   EXPECT_THAT(StepsOf(report), testing::IsSupersetOf({"data_edge", "form"}));
   const nlohmann::json& candidates = report["candidates"];
-  ASSERT_GE(candidates.size(), 4U);  // as fitted, thinned, and two forms
+  ASSERT_GE(candidates.size(), 4U);  // the fit, thinned, and two forms
   EXPECT_EQ(candidates[0]["name"], "as fitted");
   EXPECT_EQ(candidates[0]["parameters"], 156);
   int like_the_chosen = 0;
@@ -343,14 +343,14 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
         candidate["parameters"] == parameters && candidate["objective"] == report["objective"];
   }
   EXPECT_EQ(like_the_chosen, 1);
-  // What the judge saw of it, on a quarter of the pixels.
+  // The judge saw a quarter of the pixels only.
   EXPECT_NEAR(report["appearance"]["psnr_db"].get<double>(), best, 0.5);
   EXPECT_THAT(result.out, HasSubstr(", " + std::to_string(parameters) + " of them stored, "));
   EXPECT_THAT(result.out, HasSubstr("\ncandidates   as fitted: PSNR "));
   EXPECT_THAT(result.out, HasSubstr("   <- chosen\n"));
   EXPECT_THAT(result.out, HasSubstr(" %, after data edge "));
 
-  // What was stored scores as the fit said.
+  // `score` finds the reported E in the stored model.
   const ProgramResult score = RunProgram({"score", out + "/model.json", "synth:plastic@30x30x60",
                                           "--noise=0.02", "--max_angle=40", "--json"});
   ASSERT_EQ(score.status, 0) << score.err;
@@ -452,7 +452,7 @@ TEST(Fit, AThinnedModelReflectsAsMuchToo) {
   EXPECT_LT(how["error_after"], 0.5 * how["error_before"].get<double>());
 }
 
-// What is said of a solver is that solver's: printed, reported, stored and traced alike.
+// The solver's result is printed, reported, stored and traced alike.
 TEST(Fit, RawReportsAndStoresWhatTheSolverFound) {
   const TemporaryFolder folder;
   const ProgramResult result = RunProgram(Fit(folder / "out", {"--raw", "--max_angle=60"}));
@@ -474,7 +474,7 @@ TEST(Fit, RawReportsAndStoresWhatTheSolverFound) {
   }
 }
 
-// So that what differs between seeds is the fit, and not what was fitted.
+// With --data_seed, seeds change the fit, and not the data.
 TEST(Fit, ADataSeedKeepsTheDataWhileTheSeedMovesTheStart) {
   const TemporaryFolder folder;
   const auto initial = [&](const char* name, const std::vector<std::string>& seeds) {
@@ -677,7 +677,7 @@ TEST(Fit, SaysSoWhenItsReportIsLost) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
 }
 
-// As `sh` closes one with >&-. The next file that is opened must not take its place.
+// `sh` closes a stream with >&-. The next file that is opened must not take its place.
 TEST(Fit, TakesNoFileForAStandardStream) {
   const auto run = [](const std::string& command) {
     return RunProgram({"-c", command, Program()}, {}, "/bin/sh");

@@ -1,4 +1,4 @@
-// What the system refuses the program, memory, size of files, cores, is told in a line.
+// System limits on memory, file size and cores are reported in one line.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Within limits as the shell's `ulimit` sets them; one that hangs busily ends after ten seconds.
+// Runs the program within limits of the shell's `ulimit`, for at most ten seconds of processor
+// time.
 ProgramResult RunWithin(const std::string& limit, const std::vector<std::string>& arguments) {
   std::vector<std::string> words = {"-c", "ulimit -t 10; ulimit " + limit + "; exec \"$0\" \"$@\"",
                                     Program()};

@@ -1,4 +1,4 @@
-// What commands leave on the disk: one result a folder, and inputs as they were.
+// Files that commands leave on the disk: one result per folder, and unchanged inputs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(FitFolder, HoldsTheFilesOfOneRun) {
               UnorderedElementsAre("model.json", "trace.csv", "report.json", "convergence.csv",
                                    "reconstruction.binary", "factors.png", "slices.png",
                                    "spheres.png", "trace.png", "view.html"));
-  // Of MERL's bins, though the fit had others.
+  // The reconstruction has MERL's bins, though the fit had others.
   const BrdfTable table = ReadMerl(out + "/reconstruction.binary");
   const int bin = table.grid.Index(10, 20, 90);
   const double expected =
@@ -315,7 +315,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
 TEST(FitMany, WhatIsNotWholeIsFittedAgain) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  // By itself, without the thumbnail that a page needs.
+  // A fit by itself has no thumbnail, which a page needs.
   ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + out + "/felt"})).status, 0);
   const std::vector<std::string> command =
       Quick({"fit", "synth:felt@30x30x60", "--shard=1/1", "--plots", "--out=" + out});

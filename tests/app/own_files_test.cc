@@ -74,8 +74,8 @@ TEST(OwnFiles, AreKnownByWhatTheySay) {
   Succeed(Fit(out));
 }
 
-// What the command would write, from its result; each of these files, if it is another's, is in its
-// way: beside the result, and alone.
+// Replaces each file that the command writes by one of the user's, beside the result and alone: the
+// command must refuse to overwrite it.
 void ExpectAllRefused(const std::vector<std::string>& command, const std::string& folder) {
   Succeed(command);
   const auto written = FilesIn(folder);

@@ -94,7 +94,7 @@ TEST_F(PreviousModel, OfABatchStaysAndTheBatchGoesOn) {
   EXPECT_TRUE(HasPrevious("/felt"));
   EXPECT_TRUE(HasPrevious("/rubber"));
   EXPECT_THAT(fit("--lobes=2"), HasSubstr("felt: kept"));
-  // What a killed fit of these flags has left is made again without a word.
+  // An unfinished fit of the same flags is made again, and its model is not kept.
   std::filesystem::remove(out_ + "/felt/report.json");
   std::filesystem::remove(out_ + "/felt/model.previous.json");
   EXPECT_THAT(fit("--lobes=2"), HasSubstr("felt: fitted"));

@@ -16,7 +16,7 @@ namespace trilobe {
 
 struct TerminalResult {
   int status = -1;   // exit status; -1 if it was killed by a signal
-  std::string text;  // what the terminal got, control characters included
+  std::string text;  // received by the terminal, control characters included
 };
 
 // Runs the real program on a terminal of its own. As soon as it has written `cue`, sends it

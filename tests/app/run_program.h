@@ -38,8 +38,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// For a child that is to heed signals: one that whoever started the tests ignores, as nohup and the
-// `&` of a script do, would stay so.
+// Lets a child heed signals. It inherits those that whoever started the tests ignores, as nohup and
+// the `&` of a script do.
 inline void HeedSignals() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);

@@ -1,4 +1,4 @@
-// What `trilobe fit` stores of scattered samples: the model that was solved, on its own few nodes.
+// `trilobe fit` stores the model that was solved for scattered samples, on its own few nodes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST_F(Scattered, StoresTheModelThatWasSolved) {
   const json score = json::parse(RunProgram({"score", path, folder_ / "few.csv", "--json"}).out);
   EXPECT_NEAR(score["objective"], solved, 1e-9 * solved);
 
-  // What evaluates models takes its few nodes.
+  // Evaluators take its few nodes.
   const PreparedModel<double> prepared(file.model);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> theta(0, 1.5), phi(0, 6);
@@ -71,7 +71,7 @@ TEST_F(Scattered, StoresTheModelThatWasSolved) {
     const Rgb expected = Evaluate(file.model, at), value = prepared.Value(at.wi, at.wo);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], 1e-9 * (1 + expected[c]));
   }
-  // And it can be held against the whole table that the samples are of.
+  // The model can be compared with the whole table that the samples are of.
   const json whole =
       json::parse(RunProgram({"score", path, "synth:rubber@30x30x60", "--json"}).out);
   EXPECT_LT(whole["relative_objective"], 0.1);

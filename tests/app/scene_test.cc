@@ -133,7 +133,7 @@ TEST(Scene, AModelIsItsOwnFit) {
   EXPECT_THAT(RunProgram({"plan", scene}).err, HasSubstr("did you mean 'material:paper_white'?"));
 }
 
-// What a prior says between them does not count.
+// The budget counts the samples, not what a prior says between them.
 TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
   const TemporaryFolder folder;
   const std::string source = FewSamples(folder, "plastic@30x30x60");

@@ -89,7 +89,7 @@ TEST_F(SentFiles, OfABatchNameNoFolderEvenInErrors) {
   const std::string bad = home_ + "/bad.csv", out = home_ + "/fits";
   std::ofstream(bad) << "no measurement\n";
   const ProgramResult result = Run(Fit(out, {bad, home_ + "/gone.csv"}), 3);
-  EXPECT_THAT(result.out, HasSubstr(bad));  // who runs it sees where it is
+  EXPECT_THAT(result.out, HasSubstr(bad));  // the terminal shows the whole path
   EXPECT_THAT(TextIn(out), HasSubstr("\nfelt,felt.csv,fitted,"));
   EXPECT_THAT(TextIn(out), HasSubstr("bad.csv: "));
   EXPECT_THAT(TextIn(out), Not(HasSubstr(kUser)));

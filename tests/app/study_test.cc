@@ -48,7 +48,7 @@ TEST_F(Study, ComparesSolversGoesOnAndKeeps) {
   EXPECT_THAT(page, HasSubstr("copper/awls/start-2/report.json"));
   EXPECT_THAT(page, HasSubstr("Content-Security-Policy"));
 
-  // What a solver found is what is compared: the report's E is that of the last row of the trace.
+  // A study compares raw fits: the reported E is the solver's.
   const auto report = nlohmann::json::parse(Contents(out_ + "/copper/awls/start-1/report.json"));
   EXPECT_TRUE(report.at("raw"));
   EXPECT_DOUBLE_EQ(report.at("objective"), report.at("solver_objective"));
@@ -59,7 +59,7 @@ TEST_F(Study, ComparesSolversGoesOnAndKeeps) {
   EXPECT_THAT(again.out, HasSubstr("copper, lm, start 2: kept"));
   EXPECT_EQ(Contents(out_ + "/runs.csv"), runs);
   std::filesystem::remove_all(out_ + "/copper/lm/start-2");
-  // What was damaged since is made again.
+  // A damaged result is made again.
   std::filesystem::resize_file(out_ + "/copper/awls/start-1/trace.csv", 30);  // in its header
   const ProgramResult third = RunStudy(flags);
   EXPECT_THAT(third.out, HasSubstr("copper, awls, start 1: fitted"));

@@ -59,7 +59,7 @@ TEST(NdfSamplerTest, DrawsWithItsDensityAndIsUnbiased) {
             wi, bin, [&](const Direction& wo) { return sampler.Pdf(wi, wo); });
         total += expected[bin];
       }
-      // What is missing to 1 is below the horizon.
+      // The remainder to 1 is below the horizon.
       EXPECT_LE(total, 1.02) << where;
       EXPECT_NEAR(total, static_cast<double>(above) / kDraws, 0.03) << where;
       for (double& x : expected) x *= above / total;
@@ -89,7 +89,7 @@ TEST(NdfSamplerTest, BinsHaveTheirTrueWidths) {
   }
 }
 
-// Of a highlight of a fifth of a degree, bins of one degree draw most directions beside it.
+// For a highlight of a fifth of a degree, bins of one degree draw most directions beside it.
 TEST(NdfSamplerTest, BinsOfOneDegreeMissNarrowHighlights) {
   const FactorModel model = AnalyticModel(ModelSpec::SharedFactors(1), 0.003, 0);
   const auto within = [&model](NdfSampler::Bins bins) {

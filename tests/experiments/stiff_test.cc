@@ -132,7 +132,7 @@ TEST_P(Stiff, HasItsAnswer) {
   const auto E = static_cast<double>(reference.Value(ToVector<long double>(right.model)));
   const double rounding = 1e-25 * right.measured_energy;
   EXPECT_NEAR(E, right.objective, 1e-11 * right.objective + rounding);
-  // And is canonical for the library, too.
+  // It is canonical for the library, too.
   FactorModel canonical = right.model;
   NormalizeScale(objective.coverage(), &canonical);
   const std::vector<bool> all(problem.spec.num_parameters(), true);

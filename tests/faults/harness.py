@@ -44,7 +44,7 @@ FIT_FILES = {"model.json", "trace.csv", "report.json", "convergence.csv", "recon
 # The pictures, and the score, take a tenth of the time under six lights instead of 600.
 ENVIRONMENT = {"TRILOBE_TEST_LIGHTS": "6"}
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
-# With these root reads and writes what its owner may not: CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH.
+# Capabilities that let root read and write what the owner may not: CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH.
 OVERRIDES = [1, 2]
 PR_CAPBSET_DROP = 24
 # How often each is drawn.
@@ -113,7 +113,7 @@ class Command:
         return (next(iter(runs)) if runs else None), sealed
 
     def check(self, before, dropped):
-        """What is left after a fault: of one run in each folder. Returns the runs by folder."""
+        """Checks that after a fault each folder holds files of one run. Returns the runs by folder."""
         runs = {}
         now = snapshot(self.out) if os.path.isdir(self.out) else {}
         for folder in self.folders:

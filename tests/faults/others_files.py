@@ -71,7 +71,7 @@ def trial(harness):
     harness.succeed(words)
     names = sorted(snapshot(folder))
     require(names, f"{kind} writes nothing")
-    harness.succeed(words)  # what is its own is not in its way
+    harness.succeed(words)  # its own files are not in its way
     require(sorted(snapshot(folder)) == names, f"{kind} writes other files when it is run again")
     alone = harness.random.random() < 0.4
     own = os.path.join(harness.room, "own")

@@ -1,5 +1,4 @@
-// What a caller may give to what finishes a fit, or to its prior, that is no such thing: an Error
-// in one line, and no crash.
+// Invalid arguments to finishing steps or to the prior give an Error of one line, and no crash.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

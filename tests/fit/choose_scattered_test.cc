@@ -79,7 +79,7 @@ TEST(FitOfScattered, ChoosesTheFormThatTheMaterialNeeds) {
   EXPECT_EQ(fit.finished.too_few_to_choose, 0);
   const Rgb widths = {0.15, 0.25, 0.4};
   EXPECT_GT(Unseen(fit, widths), Unseen(Fit(measured, Default(options)), widths) + 6);
-  // What is judged is the fit to a part, and what is returned one to all.
+  // Forms are judged by fits to a part of the samples; the returned model is fitted to all.
   EXPECT_EQ(fit.score.valid_samples, measured.samples.size());
   EXPECT_EQ(fit.objective.spec(), fit.model().spec());
   EXPECT_EQ(fit.score.objective, fit.objective.Value(fit.model()));
@@ -132,7 +132,7 @@ TEST(FitOfScattered, StoppedWhileItChoosesHasAModelOfTheBudget) {
   EXPECT_LT(fit.score.relative_objective, 0.1);
 }
 
-// Of a cloth, at so few of the pairs of nodes that they are no grid.
+// A cloth, measured at too few pairs of nodes for a grid.
 TEST(FitOfScattered, ChoosesAmongAnisotropicForms) {
   Measurement measured = LoadMeasurement("synth:linen@6x24");
   LeaveOutAtRandom(0.75, 1, &measured);

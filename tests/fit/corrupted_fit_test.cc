@@ -49,7 +49,7 @@ class CorruptedFit : public testing::TestWithParam<CorruptionKind> {};
 
 TEST_P(CorruptedFit, IsSoundOrOneLine) {
   const CorruptionKind& kind = GetParam();
-  // From next to nothing to the most.
+  // Strengths from almost nothing to the greatest.
   const std::vector<double> shares = {0.001, 0.03, 0.3, 1}, ends = {kind.min, kind.max};
   for (const double& share : shares) {
     for (const double& end : ends) {

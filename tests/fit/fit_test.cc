@@ -68,7 +68,7 @@ TEST(Fit, IsHeldAgainstSamplesThatItHasNotSeen) {
   ASSERT_TRUE(fit.held_out);
   EXPECT_EQ(Parameters(fit), Parameters(all));  // is of all samples as before
 
-  // By hand: the same fit to what is left, at what is not.
+  // The same by hand: a fit to the remaining samples is compared at those left out.
   const BrdfSamples samples = SamplesOf(measured);
   const HeldOutPart part(samples, 1, 1);
   options.held_out.reset();
@@ -100,7 +100,7 @@ TEST(Fit, HoldsNothingOutOfTooFewSamples) {
   EXPECT_FALSE(Fit(measured, options).held_out);
 }
 
-// After a solver that has come to the end, so that E cannot but rise.
+// The solver has converged, so that smoothing can only raise E.
 TEST(Fit, IsAsSmoothAsAsked) {
   const Measurement measured = LoadMeasurement("synth:plastic@20x20x40");
   FitOptions options = Quick();
@@ -122,10 +122,10 @@ TEST(Fit, IsAsSmoothAsAsked) {
   EXPECT_EQ(step.objective_after, smooth.score.objective);
 }
 
-// What a report says of a solver is that solver's: E where it ended, which the trace ends with, and
-// a model that nothing else has changed.
+// A raw fit reports the solver's own results: the E of its trace, and a model that nothing else has
+// changed.
 TEST(Fit, RawIsWhatTheSolverFound) {
-  // With an edge of the data, which joint steps would tie.
+  // The data have an edge, at which joint steps would tie entries.
   const Measurement measured =
       LoadMeasurement("synth:copper@20x20x40", {.noise = 0.02, .max_angle_deg = 60});
   for (const SolverEntry& solver : Solvers()) {

@@ -27,7 +27,7 @@ FitResult FitUpTo(double degrees, const Measurement& whole) {
   return Fit(measured, {.appearance = kSmall});
 }
 
-// Of materials whose truth beyond is known.
+// The truth beyond the data is known for these materials.
 TEST(GuessError, OfTheWholeIsWithinAFactorOfTheTruth) {
   const std::vector<std::string> names = {"synth:plastic@30x30x60", "synth:copper@30x30x60"};
   const std::vector<double> limits = {60, 72};
@@ -65,7 +65,7 @@ TEST(GuessError, IsOfWhatWasNotMeasured) {
   EXPECT_LT(fit.whole->psnr_db, fit.appearance->sphere.psnr_db);
 }
 
-// What a table holds of the plane of incidence.
+// Samples of a table in the plane of incidence.
 Measurement ScansOf(const BrdfTable& table, const std::vector<double>& incidences) {
   SampleCollector collector("scans", "test");
   const TabulatedBrdf brdf(table);
@@ -94,7 +94,7 @@ TEST(GuessError, OfScansIsNearTheTruth) {
       << fit.whole->mean_delta_e << " for " << truth.mean_delta_e;
   EXPECT_NEAR(fit.whole->psnr_db, truth.psnr_db, 9);
   EXPECT_GT(fit.whole->mean_delta_e, fit.samples_seen->mean_delta_e);
-  // Of one incidence there is no half.
+  // One incidence cannot be halved.
   EXPECT_FALSE(fit_to({40}).whole.has_value());
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 ModelSpec Spec() { return ModelSpec::SharedFactors(1, {.theta_h = 8, .theta_d = 6}); }
 
-// Of a white diffuser, at directions spread as a highlight asks for.
+// Samples of a diffuser, at directions spread as a highlight asks for.
 BrdfSamples White(size_t count) {
   BrdfSamples samples;
   samples.source = "white";
@@ -71,7 +71,7 @@ TEST(HeldOutPart, IsAFunctionOfSeedAndAngles) {
 TEST(HeldOutPart, LeavesAPriorAsItIs) {
   const BrdfSamples samples = White(500);
   const Objective data = Of(samples);
-  BrdfSamples both = White(700);  // of which the first 500 are others
+  BrdfSamples both = White(700);  // the first 500 are replaced
   for (int j = 0; j < 500; ++j) {
     both.angles[j] = samples.angles[j];
     both.directions[j] = samples.directions[j];

@@ -14,7 +14,7 @@ import numpy as np
 Array = np.ndarray
 PROGRAM = ""
 BINS = (90, 90, 180)
-SCALES = np.array([1.0, 1.15, 1.66]) / 1500  # of a MERL file, red, green, blue
+SCALES = np.array([1.0, 1.15, 1.66]) / 1500  # scales of a MERL file: red, green, blue
 
 
 def spline(values: Array, theta: Array) -> Array:
@@ -28,7 +28,7 @@ def spline(values: Array, theta: Array) -> Array:
 
 
 def linear(values: Array, coordinate: Array) -> Array:
-    """Between the centres of bins, whose coordinate is k + 1/2, and constant beyond."""
+    """Linear interpolation between the centres of bins, whose coordinate is k + 1/2; constant beyond."""
     return np.interp(coordinate - 0.5, np.arange(len(values)), values)
 
 
@@ -58,7 +58,7 @@ class Samples:
         return rho
 
     def weights(self) -> Array:
-        """Those of `appearance`, the same for all channels [n]."""
+        """Weights of `appearance`, the same for all channels [n]."""
         c = self.cosines[0] * self.cosines[1]
         mean = self.rho.mean(axis=1)
         measure = self.solid_angle * self.counts
@@ -98,7 +98,7 @@ def read_csv(path: pathlib.Path) -> Samples:
 
 
 def counts_of(angles: Array) -> Array:
-    """How much each of scattered samples counts, by how dense they are; `angles` in degrees [n, 4]."""
+    """Weights of scattered samples, by how dense they are; `angles` in degrees [n, 4]."""
     theta = np.sort(angles[:, [0, 2]], axis=1)
     between = np.abs((angles[:, 1] - angles[:, 3] + 180) % 360 - 180)
     places = np.column_stack([theta / 7.5, between / 15])

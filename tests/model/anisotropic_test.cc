@@ -262,7 +262,7 @@ TEST(Anisotropic, ThinnedSamplesStillTouchEveryNode) {
   }
 }
 
-// Where no sample reads the horizon, the canonical form continues cos theta / G to it, linearly in
+// If no sample reads the horizon, the canonical form continues cos theta / G to it, linearly in
 // cos theta, up to three times as far as it is or as low.
 TEST(Anisotropic, GContinuesToTheHorizon) {
   const double end = DegreesToRadians(75);

@@ -108,7 +108,7 @@ TEST(ModelSpec, RefusesWhatIsOutOfRange) {
   }
 }
 
-// About three nodes for two theta of the data, and one at 75 degrees.
+// Splines have about three nodes for two theta of the data, and one at 75 degrees.
 TEST(ModelSpec, SplinesForFewThetaHaveANodeWhereDataEnd) {
   for (const auto& [thetas, nodes] : {std::pair(1, 9), {6, 9}, {12, 15}, {20, 27}, {1000, 87}}) {
     Axis axis{.rule = Axis::Rule::kSpline, .size = Axis::SplineNodesFor(thetas)};

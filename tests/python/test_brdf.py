@@ -106,7 +106,7 @@ def test_takes_arrays_as_they_lie():
     np.testing.assert_array_equal(brdf.eval(np.asfortranarray(wi), wo), f)
     np.testing.assert_array_equal(brdf.eval(wi[::-2], wo[::-2]), f[::-2])
     np.testing.assert_array_equal(brdf.eval(wi.astype(">f8"), wo.tolist()), f)
-    # Of half precision, and integers.
+    # Half precision and integers.
     assert brdf.eval(wi.astype(np.float16), wo.astype(np.float32)).dtype == np.float32
     np.testing.assert_array_equal(brdf.eval(np.array([0, 0, 1]), [0, 0, 1]),
                                   brdf.eval([0.0, 0, 1], [0.0, 0, 1]))
@@ -126,7 +126,7 @@ class Exported:
 
 
 class Elsewhere(Exported):
-    """In the memory of a GPU."""
+    """An array in the memory of a GPU."""
 
     def __dlpack__(self, **options):
         raise BufferError("cannot export a tensor of cuda:0 to the CPU")

@@ -34,7 +34,7 @@ def without_times(text):
 
 
 def without_seconds(value):
-    """Of a list of steps; anything else as it is."""
+    """A list of steps with `seconds` set to None; anything else as it is."""
     if not isinstance(value, list):
         return value
     return [{**step, "seconds": None} if isinstance(step, dict) else step for step in value]

@@ -32,7 +32,7 @@ dtypes = st.sampled_from(["f2", "f4", "f8", ">f8", "i1", "i8", "u2", "?", "c8", 
 
 @st.composite
 def arrays(draw):
-    """Of any dtype and shape, in any order in memory, most of them nearly right."""
+    """Arrays of any dtype, shape and memory order, most of them nearly right."""
     nearly = st.sampled_from([(3,), (1, 3), (4, 3), (2, 4, 3), (0, 3), (2,), (4, 2), (90,), (3, 90)])
     shape = draw(st.one_of(nearly, hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4)))
     dtype = draw(st.one_of(st.sampled_from(["f4", "f8"]), dtypes))
@@ -176,7 +176,7 @@ names = st.sampled_from(["auto", "awls", "lm", "independent", "isotropic", "anis
 
 
 @needs_fits
-@hypothesis.settings(settings, max_examples=max(CALLS // 10, 20))  # of which each takes some 50 ms
+@hypothesis.settings(settings, max_examples=max(CALLS // 10, 20))  # each takes some 50 ms
 @hypothesis.given(st.dictionaries(st.sampled_from(FIT_OPTIONS), st.one_of(names, anything), max_size=3))
 def test_fits_by_any_option(options):
     options = {"solver": "awls", "max_seconds": 0.05, **options, "progress": False}
@@ -197,7 +197,7 @@ def test_fits_by_any_option(options):
                   st.dictionaries(st.sampled_from(["replicates", "blocks", "seed"]), anything, max_size=2))
 def test_is_uncertain_by_any_option(method, options):
     if isinstance(options.get("replicates"), int):
-        options["replicates"] = min(options["replicates"], 3)  # of which each takes time
+        options["replicates"] = min(options["replicates"], 3)  # each takes time
     holds(lambda: FITTED.uncertainty(method, **{"replicates": 2, **options}))
 
 

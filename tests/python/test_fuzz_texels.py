@@ -97,7 +97,7 @@ def test_loads_texels_of_any_path(path):
         trilobe.load_texels(path)
 
 
-@hypothesis.settings(settings, max_examples=max(CALLS // 10, 20))  # of which each draws a picture
+@hypothesis.settings(settings, max_examples=max(CALLS // 10, 20))  # each draws a picture
 @hypothesis.given(st.sampled_from(["factors", "slices", "spheres", "trace"]), st.one_of(
     st.sampled_from(MODELS), anything), st.one_of(st.just(TINY), anything), anything)
 def test_draws_anything(how, model, measurement, figure):

@@ -41,7 +41,7 @@ def test_objectives_at_anything(E, x, what):
         return
     if what == "project":
         assert (found >= 0).all() and np.isfinite(found).all()
-    # Of entries whose products overflow, E does, too.
+    # E overflows where products of entries do.
     moderate = np.abs(np.asarray(x, float)).max(initial=0) < 1e20
     for array in found if isinstance(found, tuple) else (found,):
         assert not moderate or np.isfinite(array.data if what == "jacobian" else array).all()
@@ -81,7 +81,7 @@ def test_converts_anything(tmp_path_factory, what, path, options):
 
 
 @pytest.mark.skipif(CALLS < 60, reason="takes long")
-@hypothesis.settings(settings, max_examples=max(CALLS // 10, 1))  # of which some take a second
+@hypothesis.settings(settings, max_examples=max(CALLS // 10, 1))  # some take a second
 @hypothesis.given(st.one_of(models, st.just(TINY)), st.sampled_from(
     ["a.bsdf", "a.mtlx", "a.principled.json", "a.zemax.bsdf", "a.xml", "a.binary", "a.bin", "a.xompt"]),
     st.fixed_dictionaries({}, optional={"error": st.floats(), "spectral": st.booleans(), "threads": st.integers()}))
@@ -172,13 +172,13 @@ def test_modules_of_anything(brdf, options, texel):
     if isinstance(options.get("dtype"), str) and hasattr(torch, options["dtype"]):
         options["dtype"] = getattr(torch, options["dtype"])
     if isinstance(options.get("texels"), int):
-        options["texels"] = min(options["texels"], 3)  # of which each takes memory
+        options["texels"] = min(options["texels"], 3)  # each takes memory
     model = _raised(lambda: trilobe.torch.Model(brdf, **options))
     if model is not None:
         holds(lambda: model.brdf(texel).eval([0, 0, 1], [0.6, 0, 0.8]))
 
 
-@hypothesis.settings(settings, max_examples=max(CALLS // 10, 10))  # of which each starts the program
+@hypothesis.settings(settings, max_examples=max(CALLS // 10, 10))  # each starts the program
 @hypothesis.given(st.one_of(st.just("synth:plastic@6x6x12"), st.lists(st.one_of(paths, st.just("synth:felt@3x4")))),
                   paths, st.fixed_dictionaries({}, optional={
                       "workers": anything, "program": paths, "solver": anything, "max_iterations": st.integers(0, 1),

@@ -31,7 +31,7 @@ def is_there():
         mi.set_variant(COMPILED)
         dr.eval(mi.Float([1, 2]) + 1)
     except Exception:
-        # What was asked for by name must be there.
+        # A backend that is asked for by name must be there.
         if "TRILOBE_TEST_BACKEND" in os.environ:
             raise
         return False
@@ -258,7 +258,7 @@ def test_chi2_can_fail():
 @pytest.mark.parametrize("variant", ["scalar_rgb", "scalar_spectral"]
                          + [COMPILED, f"{BACKEND}_ad_spectral", f"{BACKEND}_ad_mono"] * IS_THERE)
 def test_a_furnace_shows_the_albedo(variant):
-    """Of a white surface under even light, a picture is what all variants agree on: its albedo."""
+    """Under even light, pictures of a white surface show its albedo in all variants."""
     if variant not in mi.variants():
         pytest.skip("not in this Mitsuba")
     mi.set_variant(variant)
@@ -266,7 +266,7 @@ def test_a_furnace_shows_the_albedo(variant):
     spp = 256 if variant.endswith("spectral") else 64  # noise of the wavelengths drawn
     picture = np.array(mi.render(scene(plugin.bsdf(brdf), size=8, spp=spp), spp=spp))
     middle = picture[3:5, 3:5].reshape(4, -1).mean(axis=0)
-    # What four pixels see of a sphere from (0, 0, 5): about 6 degrees off the normal.
+    # The four middle pixels, seen from (0, 0, 5), are about 6 degrees off the sphere's normal.
     albedo = brdf.albedo([math.sin(0.1), 0, math.cos(0.1)])
     if variant.endswith("mono"):
         albedo = albedo @ [0.212671, 0.715160, 0.072169]
@@ -410,7 +410,7 @@ def test_gradients_of_an_error_are_unbiased_at_few_samples():
         along = many[name] / np.linalg.norm(many[name])
         found = [np.sum(gradient[name] * along) for gradient in few]
         wanted = np.linalg.norm(many[name])
-        deviation = np.std(found, ddof=1) / 4  # of the mean
+        deviation = np.std(found, ddof=1) / 4  # standard error of the mean
         assert abs(np.mean(found) - wanted) < 4 * deviation, name
         assert deviation < 0.3 * wanted, name  # so that this says something
 

@@ -1,4 +1,4 @@
-"""What pip installs: trilobe, and the trilobe-evaluate that it stands on."""
+"""Packages that pip installs: trilobe, and trilobe-evaluate, on which it depends."""
 
 from pathlib import Path
 

@@ -32,7 +32,7 @@ def pair():
 
 @functools.lru_cache
 def materials():
-    """Of one lobe each, from sharp to broad, in three colours."""
+    """Models of one lobe each, from sharp to broad, in three colours."""
     brdf = isotropic()
     theta = (np.arange(90) + 0.5) / 90
     made = []
@@ -133,7 +133,7 @@ def test_a_material_may_be_found(pair):
 
 
 class Slices:
-    """As h5py and zarr have them, and counts what is read; stops after some tiles."""
+    """Array with the slices of h5py and zarr; counts the rows read, and stops after some tiles."""
 
     def __init__(self, array, most=10**9):
         self.shape, self.array, self.most, self.rows = array.shape, array, most, 0
@@ -282,10 +282,10 @@ def test_memory_does_not_grow_with_texels(tmp_path):
     path = os.pathsep.join([here, os.environ.get("PYTHONPATH", "")])
     told = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=True)
     few, many = (int(kib) for kib in told.stdout.split())
-    assert many - few < 30_000  # of 112,500 that float32 values take, and 225,000 that float64 ones do
+    assert many - few < 30_000  # float32 values take 112,500, float64 ones 225,000
 
 
-# What makes no sense.
+# Invalid arguments.
 
 
 @pytest.mark.parametrize("change, told", [

@@ -14,7 +14,7 @@ torch = pytest.importorskip("torch", reason="PyTorch is not installed: pip insta
 
 MODELS = {"isotropic": isotropic, "stretched": stretched, "lambertian": lambertian, "independent": independent,
           "anisotropic": anisotropic}
-# Where splines and arcs end, too.
+# Directions where splines and arcs end, too.
 EDGES = np.array([[0, 0, 1], [1, 0, 1e-3], [0.6, 0, 0.8], [-0.6, 0, 0.8], [0.1, 0.2, -0.5], [0, 0, 0]])
 
 
@@ -22,7 +22,7 @@ EDGES = np.array([[0, 0, 1], [1, 0, 1e-3], [0.6, 0, 0.8], [-0.6, 0, 0.8], [0.1, 
 def test_values_are_those_of_the_library(name):
     brdf = MODELS[name]()
     wi, wo = (np.concatenate([directions(3000, seed), edges]) for seed, edges in ((1, EDGES), (2, EDGES[::-1])))
-    wi[:500] *= 3  # of any length
+    wi[:500] *= 3  # any length will do
     ours = trilobe.torch.eval(brdf, torch.tensor(wi), torch.tensor(wo)).numpy()
     np.testing.assert_allclose(ours, brdf.eval(wi, wo), rtol=1e-6, atol=1e-9)
     wi, wo = directions(40, 3)[:, None], directions(50, 4)

@@ -66,7 +66,7 @@ def test_a_limit_of_time_bounds_the_whole_fit():
     wall = time.perf_counter() - begin
     assert result.report["stop_reason"] == "max_seconds" and result.message == "max_seconds is over"
     assert not result.interrupted and not result.success
-    assert result.report["finishing"] == []  # what follows the solver has no time left
+    assert result.report["finishing"] == []  # no time is left for finishing steps
     seconds = result.report["seconds"]
     # An iteration may be under way; what is compared afterwards is apart.
     assert seconds["prepare"] + seconds["init"] + seconds["solve"] + seconds["finish"] < 3
@@ -78,7 +78,7 @@ def test_weights_of_samples(plastic):
     plain = {"solver": "varpro", "raw": True, "max_iterations": 4, "progress": False}
     alike = trilobe.fit(plastic, weights=np.ones(len(plastic.rho)), **plain)
     np.testing.assert_array_equal(alike.x, trilobe.fit(plastic, **plain).x)
-    # As often as it counts, a sample is there.
+    # A sample of weight n counts as n equal samples.
     brdf = isotropic(entries=12)
     wi, wo = directions(3000, 1), directions(3000, 2)
     rho = brdf.eval(wi, wo)
@@ -172,7 +172,7 @@ def test_measurements_become_tables_of_pandas_and_xarray(plastic):
 
 
 def test_deviations_are_those_of_repeated_fits():
-    """Of noise as weights expect it, and a model without lobes that could change places."""
+    """The noise is that of the weights, and the model has no lobes that could change places."""
     three = isotropic(entries=8)
     brdf = trilobe.Brdf([0.5, 0.5, 0.5], [[4, 3, 2]], [np.linspace(1, 0.3, 8)], three.F, three.G[:1])
     wi, wo = directions(1500, 1), directions(1500, 2)

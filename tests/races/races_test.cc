@@ -1,5 +1,5 @@
-// What runs on several threads, small enough for the thread sanitizer: the preset `tsan`. Anywhere
-// else these are tests that the results are those of one thread.
+// Code that runs on several threads, at sizes small enough for the thread sanitizer (preset
+// `tsan`). Without it these tests check that the results are those of one thread.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-"""What the tests of files for renderers share: fits, the program, and Mitsuba, without which they skip."""
+"""Fixtures for tests of files for renderers: fits, the program, and Mitsuba, without which they skip."""
 
 from __future__ import annotations
 

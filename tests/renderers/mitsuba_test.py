@@ -19,7 +19,7 @@ from conftest import run
 Array = NDArray[np.float64]
 PAIRS = 20_000
 GRID = (90, 90, 180)  # theta_h, theta_d, phi_d
-SCALE = np.array([1, 1.15, 1.66]) / 1500  # of the channels of a MERL file
+SCALE = np.array([1, 1.15, 1.66]) / 1500  # channel scales of a MERL file
 
 
 def reader_values(file: Path) -> tuple[Array, Array, Array]:
@@ -46,7 +46,7 @@ def measured(mi: Any, variant: str, file: Path) -> Any:
 
 
 def errors(of: Array, expected: Array) -> Array:
-    """Of rho cos theta_o, relative, with an offset that keeps what is all but black out of it."""
+    """Relative errors of rho cos theta_o, with an offset that keeps nearly black values out."""
     return np.linalg.norm(of - expected, axis=1) / (np.linalg.norm(expected, axis=1) + 1e-4)
 
 
@@ -98,7 +98,7 @@ def test_spectral_values_have_the_colours_of_our_reader(mitsuba: Any, files: Pat
 
 
 def chi2_survival(statistic: float, freedom: int) -> float:
-    """How likely a larger statistic is (Wilson and Hilferty 1931)."""
+    """The probability of a larger statistic (Wilson and Hilferty 1931)."""
     mean = 1 - 2 / (9 * freedom)
     z = ((statistic / freedom) ** (1 / 3) - mean) / math.sqrt(2 / (9 * freedom))
     return 0.5 * math.erfc(z / math.sqrt(2))
@@ -130,7 +130,7 @@ def test_samples_are_drawn_by_the_density(mitsuba: Any, files: Path, name: str, 
         column = min(int(math.sqrt(2 * math.acos(min(h[2], 1)) / math.pi) * columns), columns - 1)
         row = min(int((math.atan2(h[1], h[0]) / (2 * math.pi) + 0.5) * rows), rows - 1)
         observed[row, column] += 1
-    # What the density says of each cell: midpoints of fine^2 parts, theta_h = u^2 pi / 2.
+    # Expected share of each cell: the density at midpoints of fine^2 parts, theta_h = u^2 pi / 2.
     expected = np.zeros((rows, columns))
     for column in range(columns * fine):
         u = (column + 0.5) / (columns * fine)

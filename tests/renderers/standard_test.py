@@ -38,7 +38,7 @@ def test_materialx_takes_the_document(files: Path) -> None:
 
 
 def test_mitsubas_principled_is_as_bright_as_the_model(mitsuba: Any, files: Path) -> None:
-    """Of a metal, whose parameters mean the same there; its `clearcoat` and `spec_tint` do not."""
+    """A metal's parameters mean the same in both; Mitsuba's `clearcoat` and `spec_tint` do not."""
     mi = mitsuba
     run("fit", "synth:copper", "--solver=awls", "--max_iterations=3", "--noplots", f"--out={files / 'copper'}")
     model = files / "copper/model.json"

@@ -9,7 +9,7 @@ execute_process(
   COMMAND_ERROR_IS_FATAL ANY)
 set(build ${CMAKE_COMMAND} --build ${scratch_dir}/build --target trilobe_check_rooms)
 execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
-# What is written within one tick of the file system's clock is not newer.
+# A file written within one tick of the file system's clock does not count as newer.
 execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1)
 
 # expect_failure(FILE TEXT MESSAGE): with TEXT before what FILE, of src or include/trilobe, holds, the

@@ -52,10 +52,10 @@ class CachedCompiler(unittest.TestCase):
                        env=environment)
 
     def built(self, root, compiler):
-        """How many of the two objects ccache had when all was built."""
+        """The number of the two objects that ccache had when all was built."""
         environment = {**os.environ, "CCACHE_DIR": str(self.folder / "cache")}
         self.configure(root, compiler, environment)
-        # Not those of what CMake tried above.
+        # Hits of what CMake tried above do not count.
         subprocess.run(["ccache", "--zero-stats"], check=True, capture_output=True,
                        env=environment)
         self.build(root, environment)
@@ -69,7 +69,7 @@ class CachedCompiler(unittest.TestCase):
             self.skipTest(f"no {compiler}")
         self.assertEqual(self.built(self.checkout("a"), compiler), 0)
         self.assertEqual(self.built(self.checkout("b"), compiler), 2)
-        # What is precompiled counts, macros included.
+        # Precompiled headers count, macros included.
         other = {"one.h": "#define ONE 2\n"}
         self.assertEqual(self.built(self.checkout("c", other), compiler), 0)
 

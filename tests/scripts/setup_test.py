@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/setup.sh says of progress, and ./check of its arguments."""
+"""Tests of the progress that scripts/setup.sh prints, and of the arguments of ./check."""
 
 import pathlib
 import shutil
@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def said(*lines):
-    """What is said when a build or a test prints these lines."""
+    """Messages of tell_progress while a build or a test prints these lines."""
     script = ("source scripts/setup.sh; progress_seconds=0; "
               "tell_progress printf '%s\\n' \"$@\" 3>&1 >/dev/null")
     return subprocess.run(["bash", "-c", script, "bash", *lines], cwd=ROOT, check=True,

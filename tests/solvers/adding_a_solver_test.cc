@@ -14,7 +14,7 @@
 
 namespace trilobe {
 
-// Of the page.
+// Defined in the code of the page.
 SolverEntry PageSearchEntry();
 SolverSummary FitByPageSearch(const Objective& objective, FactorModel* model);
 

@@ -99,7 +99,7 @@ TEST(Anisotropic, AwlsNeverRaisesEElementByElement) {
 TEST(Anisotropic, EverySolverFits) {
   const ModelSpec spec = SmallSpec(2);
   const Objective objective = NoisyObjective(spec, 2);
-  const double floor = objective.Value(Cloth(spec));  // what the noise alone leaves, about
+  const double floor = objective.Value(Cloth(spec));  // about E of the noise alone
   for (const SolverEntry& solver : kLibrarySolvers) {
     if (NeedsAGrid(solver)) continue;
     FactorModel model = FindInitialModel("highlight").make(objective, 1);

@@ -1,5 +1,4 @@
-// What a caller may give to a solver that is no such thing: an Error in one line, the model as it
-// was, and no crash.
+// Invalid arguments to a solver give an Error of one line, the model as it was, and no crash.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "trilobe/solvers/start/initial_model.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
-// Of the page.
+// Defined in the program of the page.
 trilobe::FactorModel FitSmoothF(const trilobe::Objective& objective, double weight,
                                 trilobe::FactorModel* model);
 
@@ -67,7 +67,7 @@ TEST(CeresPage, EndsWhereLmDoesWithoutThePrior) {
   EXPECT_GT(objective.Value(smooth), E);
 }
 
-// By bounds alone Ceres stops above.
+// Ceres stops higher by bounds alone.
 TEST(CeresPage, EndsWhereLmDoesThoughParametersEndAtZero) {
   const Measurement plastic = LoadMeasurement("synth:plastic@12x10x16", {.noise = 0.03});
   const Objective objective(SamplesOf(plastic), ModelSpec::SharedFactors(1, kGrid),

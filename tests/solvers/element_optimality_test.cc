@@ -1,4 +1,4 @@
-// After its update an element stands where E is lowest: no other value, near or far, is better.
+// An element's update puts it where E is lowest: no other value, near or far, is better.
 #include <gtest/gtest.h>
 
 #include <algorithm>

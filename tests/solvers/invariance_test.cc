@@ -1,6 +1,5 @@
-// What must not matter to a fit, to the last bit: the unit of the measurement and, but for Ceres'
-// sums, the number of threads and whether it has been done before. And what must stay as it is:
-// unobserved bins.
+// A fit is the same to the last bit for any unit of the measurement and, but for Ceres' sums, for
+// any number of threads and when it is repeated. Unobserved bins stay as they are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,16 +95,16 @@ TEST(Invariance, ThreadsAndRepetition) {
         FactorModel again = InitialModels().front().make(other, 1);
         const double other_E =
             solver.make()->Solve(other, Sweeps(iterations), &again).final_objective;
-        EXPECT_NEAR(other_E, E, 1e-10 * E) << what;  // what is promised
+        EXPECT_NEAR(other_E, E, 1e-10 * E) << what;  // guaranteed
         if (!SameBitsForAnyThreads(solver)) continue;
-        EXPECT_EQ(other_E, E) << what;  // what is so
+        EXPECT_EQ(other_E, E) << what;  // so in fact
         EXPECT_TRUE(std::ranges::equal(again.parameters(), model.parameters())) << what;
       }
     }
   }
 }
 
-// Where the system gives no thread, one does it all.
+// If the system gives no thread, one does all the work.
 TEST(Invariance, ThreadsThatThereAreNot) {
   const BrdfTable table = RandomTable(kGrid, 1);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);

@@ -10,7 +10,7 @@ namespace trilobe {
 // A tolerance that no decrease is below.
 inline constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-// So many iterations, without a diagnosis.
+// Options for `count` iterations, without a diagnosis.
 inline SolverOptions Iterations(int count) {
   SolverOptions options;
   options.max_iterations = count;

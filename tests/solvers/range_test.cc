@@ -67,7 +67,7 @@ void ExpectRightFit(const SolverEntry& solver, const Objective& objective) {
   EXPECT_TRUE(std::isfinite(summary.diagnosis->optimality));
   EXPECT_NO_THROW(CheckParameters(model));
   const ScoreReport score = ScoreModel(objective, model);
-  // For awls_gss G is linear between nodes, which on so coarse a grid are far apart: it ends
+  // awls_gss has a G that is linear between nodes, which on so coarse a grid are far apart: it ends
   // higher.
   EXPECT_LT(score.relative_objective, solver.name == "awls_gss" ? 0.1 : 0.01);
   EXPECT_GT(score.psnr_db, 15);
@@ -108,7 +108,7 @@ TEST_P(Range, ARightFitOrAnErrorThatNamesTheFactor) {
   EXPECT_GT(refused, 0);
 }
 
-// To the last bit, since all that a power of two changes is exponents (docs/objective.md).
+// Equal to the last bit, since a power of two changes exponents only (docs/objective.md).
 TEST_P(Range, DataTimesAPowerOfTwoHaveTheSameTables) {
   const SolverEntry& solver = FindSolver(GetParam());
   const auto fitted = [&](int k) {

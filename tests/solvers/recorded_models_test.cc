@@ -30,8 +30,8 @@ constexpr MerlGrid kGrid{12, 12, 16};
 constexpr const char* kReferenceSolvers[] = {"awls", "lm", "lm_plain"};
 constexpr const char* kMaterials[] = {"plastic", "copper", "felt", "car-paint", "chrome", "rubber"};
 
-// What a model is, in few numbers: its projections on fixed directions, in units of each part's
-// largest number.
+// A model in few numbers: its projections on fixed directions, in units of each part's largest
+// number.
 std::vector<double> Fingerprint(const FactorModel& model) {
   std::vector<double> sums(4, 0.0);
   Random random(1);

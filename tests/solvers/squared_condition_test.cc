@@ -28,8 +28,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 10};
-// Of two lobes with an F a channel: scale moves between s, D and G of each lobe, and s and F of
-// each channel.
+// Gauge freedoms of two lobes with an F per channel: scale moves between s, D and G of each lobe,
+// and between s and F of each channel.
 constexpr int kGaugeDimensions = 2 * 2 + 3;
 
 // Two lobes, of which each number of the second is that of the first but for about `difference`,
@@ -64,7 +64,7 @@ struct Linearization {
   VectorXd r;
 };
 
-// By automatic differentiation, sample by sample.
+// J and r by automatic differentiation, sample by sample.
 Linearization Linearize(const Objective& objective, const FactorModel& model) {
   ParameterBlocks layout(model.spec());
   layout.Read(model);

@@ -172,8 +172,8 @@ TEST_P(Stopping, AtAnExactFit) {
   }
 }
 
-// With the filter E may rise; the best of the recorded models is returned all the same. Here G is
-// rough in truth, so that smoothing it does harm.
+// The filter may raise E; the best of the recorded models is returned all the same. Here G is rough
+// in truth, so that smoothing it does harm.
 class Filtering : public Stopping {};
 
 TEST_P(Filtering, TheFilterMayRaiseEButNotTheResult) {

@@ -1,4 +1,4 @@
-"""What is dropped beside a model: a second model, and light."""
+"""Files dropped beside a model: a second model, and light."""
 
 from __future__ import annotations
 

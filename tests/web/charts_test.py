@@ -109,7 +109,7 @@ def test_curves_are_chosen_by_lobe_and_channel(open_page: Open) -> None:
     wait_for(page, DRAWN)
     colors = ("Array.from(document.querySelectorAll('#chart-d path[stroke-width=\"2\"]'),"
               " path => path.getAttribute('stroke'))")
-    # Not twelve lines at first, but one a lobe in the lobe's colour.
+    # At first there is one line per lobe in its colour, instead of twelve lines.
     assert labels(page, "chart-d") == [f"lobe {m}" for m in (1, 2, 3, 4)]
     lobes = page.evaluate(colors)
     assert lobes[:3] == ["#E69F00", "#56B4E9", "#CC79A7"]

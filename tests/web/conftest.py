@@ -1,5 +1,5 @@
-"""What the tests of shaders and pages share: the program, models of every form, and a browser. They skip where
-Playwright (PyPI) or Debian's chromium is not there."""
+"""Fixtures for tests of shaders and pages: the program, models of every form, and a browser. They skip where Playwright
+(PyPI) or Debian's chromium is not there."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def run(*arguments: str | Path) -> str:
 
 
 def wait_for(page: Any, expression: str, seconds: float = 60) -> None:
-    """Until it is true. Playwright's wait_for_function is an eval, which pages do not allow."""
+    """Waits until the expression is true. Playwright's wait_for_function is an eval, which pages do not allow."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
         assert time.monotonic() < end, f"not within {seconds} s: {expression}"
@@ -148,7 +148,7 @@ def open_page(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
     yield opened
     for context in contexts:
         context.close()
-    # What drivers say of their own speed is not the page's.
+    # Drivers' remarks on their own speed are not the page's.
     own = [text for text in complaints if "GPU stall due to ReadPixels" not in text]
     assert own == []
 

@@ -73,7 +73,7 @@ def test_five_files_of_five_kinds(open_page: Open, scattered: Path, fits: Path, 
     with page.expect_download() as download:
         page.click("#save")
     assert download.value.suggested_filename == "model.json"
-    # What is no file of these changes nothing.
+    # A file of another kind changes nothing.
     (tmp_path / "broken.csv").write_text("theta_i,r\n")
     page.set_input_files("#file", tmp_path / "broken.csv")
     wait_for(page, "document.querySelector('#message').textContent.startsWith('broken.csv: ')")
@@ -130,7 +130,7 @@ def test_the_verdict_is_of_what_is_shown(open_page: Open) -> None:
     wait_for(page, f"{verdict}?.className === 'plain'")
     mean = page.inner_text("#captions div:last-child").split("ΔE ")[1].split()[0]
     assert float(mean) > 5 and f"ΔE {mean} apart" in page.inner_text("#verdict")
-    # What is all too dark is at most 100 % too dark.
+    # A model that is all too dark is at most 100 % too dark.
     wait_for(page, "document.getElementById('typical').textContent.includes('too dark')")
     percents = [float(word) for word in page.inner_text("#typical").split() if word.replace(".", "").isdigit()]
     assert percents and max(percents) <= 100
@@ -154,14 +154,14 @@ def test_a_page_holds_scattered_samples(open_page: Open, scattered: Path, pages:
     count = len(scattered.read_text().split("\n")) - 1
     assert page.evaluate("[trilobe.page.measured.kind, trilobe.page.measured.count]") == ["samples", count]
     assert pages["scattered"].stat().st_size <= 300e3
-    # As they are in the file.
+    # The values are those of the file.
     first = page.evaluate("(s => [s.theta_i * 180 / Math.PI, ...s.rho])(trilobe.page.measured.samples[1])")
     wanted = [float(cell) for cell in scattered.read_text().split("\n")[2].split(",")]
     assert first == pytest.approx([wanted[0], *wanted[4:]], rel=1e-5)
     wait_for(page, "trilobe.page.heat !== null")
     assert page.evaluate("trilobe.page.heat.points.length") == count
     assert not page.get_attribute("#polar", "aria-label").endswith(" 0 measured values")
-    # What the program prints of directions between the samples.
+    # The page has the program's note on directions between the samples.
     assert "times the largest measured value" in page.inner_text("#notes") or page.evaluate(
         "trilobe.contents.reach < 2 && trilobe.contents.notes.length === 0")
     assert page.evaluate("trilobe.renderer.leastCosine") == pytest.approx(math.cos(math.radians(65)), abs=1e-6)

@@ -118,7 +118,7 @@ DRAW = """async ([fragment, source, pairs]) => {
 
 
 def fragment_of(source: Path) -> str:
-    """What a browser compiles of a shader's file."""
+    """The shader source that a browser compiles for a file."""
     text = re.sub(r"/\* tables RGBA32F[^*]*\*/", "", source.read_text())
     if source.suffix == ".glsl":
         return FRAGMENT.replace("SOURCE", text)

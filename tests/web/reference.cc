@@ -20,10 +20,10 @@ namespace {
 
 using Vector = trilobe::Bsdf<double>::Vector;
 
-// By z from 0.01 to 1: a little above the horizon.
+// Directions with z from 0.01 to 1, a little above the horizon.
 Vector DirectionOf(double u, double v) {
   const double z = 0.01 + 0.99 * u, r = std::sqrt(1 - z * z), phi = 2 * trilobe::kPi * v;
-  // As floats have it, which shaders are given.
+  // Shaders are given single precision.
   const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
   return {rounded(r * std::cos(phi)), rounded(r * std::sin(phi)), rounded(z)};
 }

@@ -87,7 +87,7 @@ def served(browser: Any) -> Iterator[Callable[..., Any]]:
 
 
 def normals() -> tuple[Array, Array]:
-    """Which pixels show the sphere, but for its rim, and the normals there."""
+    """The pixels that show the sphere, but for its rim, and the normals there."""
     x = (np.arange(SIZE) + 0.5) / SIZE * 2 - 1
     square = x[None] ** 2 + x[:, None] ** 2
     inside = square < 0.8

@@ -60,7 +60,7 @@ def test_delta_e_is_that_of_the_report(open_page: Open, fits: Path) -> None:
     caption = "document.querySelector('#captions').lastChild.textContent"
     assert wanted in page.inner_text("#verdict") and wanted in page.evaluate(caption)
     assert "as shown" not in page.evaluate(caption)
-    # Under other light the page's own is told apart.
+    # Under another light the caption tells the page's own result apart.
     page.locator("#lights input[value=lamp]").check(force=True)
     finished(page)
     wait_for(page, f"{caption}.includes('as shown')")
@@ -89,7 +89,7 @@ def test_a_nearly_diffuse_lobe_is_called_so(open_page: Open, fits: Path) -> None
     chips = page.locator("#lobes label")
     for m, lobe in enumerate(lobes):
         assert ("(nearly diffuse)" in chips.nth(m).inner_text()) == lobe["nearly_diffuse"]
-    # By hand, as the fixture's lobes need not be.
+    # A flat model made by hand, since the fixture's lobes need not be nearly diffuse.
     flat = page.evaluate(
         "(() => { const model = structuredClone(trilobe.model), {D, G} = model.tables; D[0].fill(0.3);"
         " G[0].forEach((_, k) => (G[0][k] = 2 * Math.cos(((k + 0.5) / G[0].length) * Math.PI / 2)));"
@@ -180,7 +180,7 @@ def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Pa
     saved = tmp_path / "saved.json"
     download.value.save_as(saved)
     assert "822 parameters" in run("info", saved)
-    # What is saved is what was seen.
+    # The saved model looks as the page showed it.
     page.set_input_files("#file", saved)
     wait_for(page, "document.querySelector('#message').textContent.startsWith('Opened')")
     finished(page)

@@ -11,7 +11,7 @@
 // the geometry's tangents, or its first coordinates uv. WebGLRenderer only; made for three.js 0.168.
 import * as THREE from 'three';
 
-// What stands in for three's own model, after it has been declared. Directions of the model have z along the normal.
+// Replaces three's own lighting, after that has been declared. Directions of the model have z along the normal.
 const LIGHT = `
 vec3 trilobe_above(vec3 w) { return normalize(vec3(w.xy, max(w.z, 1e-3))); }
 
@@ -140,7 +140,7 @@ export function trilobeMaterial(renderer, source, {samples = 32, ...properties} 
   const anisotropic = !/#define TB_PHIS_I 1\n/.test(source);
   const defines = {TRILOBE_THETAS: anisotropic ? 32 : 64, TRILOBE_PHIS: anisotropic ? 32 : 1};
   const drawn = drawDirections(renderer, functions, tables, anisotropic ? 256 : 1024, defines);
-  // With an anisotropy, three makes tangents.
+  // three makes tangents for materials with an anisotropy.
   const material = new THREE.MeshPhysicalMaterial({...properties, anisotropy: 1});
   Object.assign(material.defines, defines, {TRILOBE_SAMPLES: samples});
   material.onBeforeCompile = shader => {
@@ -156,7 +156,7 @@ export function trilobeMaterial(renderer, source, {samples = 32, ...properties} 
     around('lights_physical_pars_fragment', '', '\n' + functions + LIGHT);
     around('lights_fragment_begin', FRAME, ENVIRONMENT);
   };
-  // Else three would take the first model's program for all.
+  // Without its own key, three would take the first model's program for all.
   material.customProgramCacheKey = () => functions;
   material.addEventListener('dispose', () => {
     tables.dispose();

@@ -1,4 +1,4 @@
-"""What the tests share."""
+"""Shared helpers of the tests."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -133,7 +133,7 @@ class PicturesTest(FolderTest):
         counts = numpy.ones((4, 4), bool)
         counts[0] = False
         fitted = measured * 1.1
-        fitted[0] = 100  # where nothing counts
+        fitted[0] = 100  # no pixel counts here
         scores = pictures.compare(measured, fitted, counts)
         # Shown at 0.35 and 0.385, on the sRGB curve; linear, the peak is 0.35.
         shown = [1.055 * x ** (1 / 2.4) - 0.055 for x in (0.35, 0.385)]
@@ -158,7 +158,7 @@ class PicturesTest(FolderTest):
         self.assertEqual(share[0, 0], -1)
         numpy.testing.assert_allclose(share[8, 8], 1, rtol=1e-5)
         self.assertGreater(measured[3, 8, 0], 1.3 * measured[12, 8, 0])
-        # What a matt sphere shows is its irradiance over pi, times its albedo of a half.
+        # A matt sphere shows its irradiance over pi, times its albedo of a half.
         lit = numpy.zeros((256, 3))
         numpy.add.at(lit, found["pixel"],
                      found["light"].astype(float).sum(axis=1) * found["unit"])

@@ -8,7 +8,7 @@ from renderer import scene
 
 
 def paths(directions):
-    """Of a small sphere under the small sky."""
+    """Paths of light to a small sphere under the small sky."""
     options = scene.parser("").parse_args(["--size=16x16"])
     options.positions, options.lights, options.directions = 4, 64, directions
     return load("renderer", "light_paths").paths(options)

@@ -1,4 +1,4 @@
-"""How fits are planned, and what is read of them."""
+"""Tests of how fits are planned, and of what is read of them."""
 import json
 import math
 import unittest

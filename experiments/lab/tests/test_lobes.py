@@ -36,7 +36,7 @@ class MatchTest(unittest.TestCase):
             self.assertAlmostEqual(table[row, column], 1, places=12)
 
     def test_all_pairs_count_not_the_best_pair(self):
-        # To take the largest score first would leave 0.1: 1.1 in all, not 1.7.
+        # Taking the largest score first would leave 0.1: 1.1 in all, not 1.7.
         self.assertEqual(lobes.assign([[1.0, 0.9], [0.8, 0.1]]), (1, 0))
         self.assertEqual(lobes.assign([[0.5, 0.5], [0.5, 0.5]]), (0, 1))
 

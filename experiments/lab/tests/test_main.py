@@ -1,4 +1,4 @@
-"""What the command leaves behind: tables and pictures that are whole, and exit statuses."""
+"""Tests of the command's results: tables and pictures that are whole, and exit statuses."""
 import contextlib
 import io
 import os
@@ -89,7 +89,7 @@ class MainTest(FolderTest):
     def test_records_takes_folders_of_fits_and_searches_only_when_asked_to(self):
         (self.folder / "empty").mkdir()
         (self.folder / "fits" / "a").mkdir(parents=True)
-        (self.folder / "fits" / "a" / "report.json").write_text("{}")  # of another version
+        (self.folder / "fits" / "a" / "report.json").write_text("{}")  # by another version
         for words, error in ((["--search"], "give BRDF files"), ([str(self.folder / "empty")], "empty holds no fits")):
             status, said = self.records(*words)
             self.assertEqual(status, 2)
@@ -128,7 +128,7 @@ class MainTest(FolderTest):
         self.words = ["good", "bad"]
         self.run_it()
         with contextlib.redirect_stdout(io.StringIO()):
-            main.publish(experiment, out)  # what has failed shows in the tables
+            main.publish(experiment, out)  # failures show in the tables
         self.assertTrue((experiment.published() / "results.csv").exists())
 
     def test_the_anisotropic_form_is_published_beside_the_full_one(self):

@@ -13,14 +13,14 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-// What this processor's kernels are called by OpenBLAS, empty where BLAS is another one.
+// OpenBLAS' name for this processor's kernels; empty with another BLAS.
 std::string Kernels() {
   const BlasCall call;  // so that what sets OpenBLAS up is linked
   auto* const name = reinterpret_cast<char* (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
   return name == nullptr ? "" : name();
 }
 
-// Where BLAS is OpenBLAS.
+// Passes with another BLAS.
 TEST(OpenBlas, HasOneThread) {
   const BlasCall call;
   auto* const threads =
@@ -28,7 +28,7 @@ TEST(OpenBlas, HasOneThread) {
   EXPECT_EQ(threads != nullptr ? threads() : 1, 1);
 }
 
-// Nor has it begun with more: in a process that has started none there is this one.
+// OpenBLAS starts no thread when it is loaded either: the process has this one only.
 TEST(OpenBlas, StartsNoThread) {
   const BlasCall call;
   const std::filesystem::directory_iterator threads("/proc/self/task");

@@ -39,7 +39,7 @@ std::vector<double> RingAndBorder(int n, int border, int reach) {
   return A;
 }
 
-// By the products with a vector, in which each entry has its part.
+// Compares products with a random vector, to which every entry contributes.
 void ExpectMultipliesBack(int n, const std::vector<double>& A) {
   std::vector<double> factor = A;
   ASSERT_TRUE(FactorCholesky(n, factor.data(), 2));
@@ -60,7 +60,7 @@ TEST(FactorCholesky, MultipliesBackToTheMatrix) {
 TEST(FactorCholesky, MultipliesBackToAMatrixWithTilesOfZeros) {
   for (const int n : {1025, 1300}) {
     ExpectMultipliesBack(n, RingAndBorder(n, /*border=*/200, /*reach=*/30));
-    // Of blocks that do not know of each other.
+    // A diagonal matrix has no coupled tiles.
     ExpectMultipliesBack(n, RingAndBorder(n, /*border=*/0, /*reach=*/0));
   }
 }
@@ -95,7 +95,7 @@ TEST(FactorCholesky, MayBeCalledFromSeveralThreads) {
 
 TEST(FactorCholesky, TellsAMatrixThatIsNotPositiveDefinite) {
   for (const int n : {20, 1300}) {
-    for (const int row : {0, n / 2, n - 1}) {  // what comes after it is given up
+    for (const int row : {0, n / 2, n - 1}) {  // the rest is given up
       std::vector<double> A = PositiveDefinite(n);
       A[static_cast<size_t>(row) * n + row] = -1;
       EXPECT_FALSE(FactorCholesky(n, A.data(), 2)) << row;

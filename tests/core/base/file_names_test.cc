@@ -21,7 +21,7 @@ TEST(WithoutFolders, LeavesTheNamesOfFiles) {
   EXPECT_EQ(WithoutFolders("data/x.csv: no data/ of olddata/x", {"data"}),
             "x.csv: no  of olddata/x");
   EXPECT_EQ(WithoutFolders("/x and a/b", {"", "/"}), "/x and a/b");
-  // As messages show a name.
+  // Messages show names with escaped control characters.
   EXPECT_EQ(WithoutFolders("/a\\nb/x: bad", {"/a\nb"}), "x: bad");
 }
 

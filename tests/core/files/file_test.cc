@@ -34,7 +34,7 @@ void WriteText(const std::string& path, const std::string& text) {
   WriteFile(path, [&](std::ostream& out) { out << text; });
 }
 
-// For a forked child: ends it with status 0 only if `check` holds.
+// Ends a forked child, with status 0 only if `check` holds.
 [[noreturn]] void ExitWith(const std::function<bool()>& check) {
   int status = 1;
   try {
@@ -156,8 +156,8 @@ TEST(WriteFile, ReportsAnUnwritableDirectory) {
   EXPECT_THAT(directory.Names(), IsEmpty());
 }
 
-// With `umask 0777` files are made that nobody can open again, and folders into which nobody can
-// write: that is known before the work.
+// Files made under `umask 0777` cannot be opened again, nor can files be made in its folders: that
+// is known before the work.
 TEST(CheckWritable, FindsOutThatFilesCouldNotBeOpened) {
   const TestDirectory directory;
   ASSERT_EQ(chmod(directory.path().c_str(), 0777), 0);
@@ -201,7 +201,7 @@ TEST(WriteFile, LeavesEverythingAsItWasOnAFullDisk) {
       testing::ExitedWithCode(0), "");
 }
 
-// What a run leaves that was killed while it wrote: nobody holds the lock of its temporary file.
+// A run that was killed while it wrote leaves a temporary file, whose lock nobody holds.
 TEST(WriteFile, IsNotInTheWayOfWhatAKilledRunLeft) {
   const TestDirectory directory;
   const std::string path = directory.Path("file");

@@ -136,7 +136,7 @@ TEST(JsonValue, RefusesWhatIsNone) {
     EXPECT_FALSE(nlohmann::json::accept(text) && text.find('\0') == std::string::npos) << text;
     EXPECT_THAT(ErrorOf([&] { JsonValue::Parse(text, "t"); }), StartsWith("t: line ")) << text;
   }
-  // What others let pass.
+  // Other parsers accept duplicate keys, numbers out of range and any depth.
   EXPECT_THAT(ErrorOf([] { JsonValue::Parse(R"({"a": 1, "b": 2, "a": 3})", "t"); }),
               HasSubstr("the key 'a' comes twice"));
   EXPECT_THAT(ErrorOf([] { JsonValue::Parse("1e999", "t"); }), HasSubstr("out of the range"));
@@ -158,7 +158,7 @@ int64_t PeakOf(const std::function<void()>& call) {
   return PeakMemory().value() - before;
 }
 
-// What the most values take is some hundred megabytes; what is beyond is refused for nothing.
+// The greatest number of values takes about a hundred megabytes; more are refused at no cost.
 TEST(JsonValue, LimitsAreCheckedBeforeAnythingIsAllocated) {
   std::string most = "[0";
   for (size_t k = 2; k < kMaxJsonValues; ++k) most += ",0";
@@ -170,7 +170,7 @@ TEST(JsonValue, LimitsAreCheckedBeforeAnythingIsAllocated) {
   const auto error_of = [](const std::string& refused) {
     std::string error;
     EXPECT_LT(PeakOf([&] { error = ErrorOf([&] { JsonValue::Parse(refused, "t"); }); }),
-              4 << 20);  // of what else a process and its sanitizers take meanwhile
+              4 << 20);  // allowance for the process and its sanitizers
     return error;
   };
   EXPECT_EQ(error_of(most + ",0]"), "t: it has about 1048577 values; at most 1048576 can be read");
@@ -185,7 +185,7 @@ TEST(JsonValue, AFileThatIsTooLargeIsNotRead) {
   // The first error takes room of its own.
   EXPECT_THAT(ErrorOf([&] { ReadJsonText(directory.Path("none"), "t"); }),
               HasSubstr("cannot read"));
-  std::filesystem::resize_file(path, size_t{1} << 29);  // of zeros that take no room
+  std::filesystem::resize_file(path, size_t{1} << 29);  // sparse: zeros that take no room
   const int64_t peak = PeakOf([&] {
     EXPECT_EQ(ErrorOf([&] { ReadJsonText(path, "t"); }),
               "t: it has 536870912 bytes; at most 16777216 can be read");

@@ -30,7 +30,7 @@ TEST(SaysOwn, JsonByItsFormat) {
         R"({"format": "blender-principled", "made": "..., found by trilobe 0.2.0"})"}) {
     EXPECT_TRUE(SaysOwn(json)) << json;
   }
-  // What a user writes for the program is the user's.
+  // Files that a user writes for the program are the user's.
   for (const char* const json : {"{}", R"({"tool": "other"})", R"({"format": "trilobe-scene"})",
                                  R"({"format": "trilobe-model")", R"({"run": 1, "files": []})",
                                  R"({"format": "blender-principled", "made": "by hand"})",

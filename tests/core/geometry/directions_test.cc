@@ -33,7 +33,7 @@ TEST(Directions, ToPolarAnglesAndBack) {
        {PolarAngles{0.3, 1}, PolarAngles{1e-7, -3}, PolarAngles{kPi / 2, 3.1}}) {
     Direction w = ToDirection(at);
     EXPECT_NEAR(Dot(w, w), 1, 1e-15);
-    for (double& x : w) x *= 3;  // of any length
+    for (double& x : w) x *= 3;  // any length will do
     EXPECT_NEAR(ToPolarAngles(w).theta, at.theta, 1e-15);
     EXPECT_NEAR(ToPolarAngles(w).phi, at.phi, 1e-14);
   }
@@ -101,7 +101,7 @@ TEST(Directions, ExchangingBothKeepsTheAngles) {
   }
 }
 
-// What the fold by symmetry rests on: phi_d -> 180 degrees - phi_d exchanges theta_i and theta_o.
+// The fold by symmetry rests on this: phi_d -> 180 degrees - phi_d exchanges theta_i and theta_o.
 TEST(Directions, MirroredPhiExchangesTheta) {
   for (const HalfDiffAngles& a : Spread()) {
     const Cosines cosines = ToCosines(a);

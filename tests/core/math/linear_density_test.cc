@@ -14,7 +14,7 @@ TEST(LinearDensity, IsInverted) {
         const double value = LinearIntegral(t, a, b);
         const double inverse = InvertLinearIntegral(value, a, b);
         EXPECT_NEAR(LinearIntegral(inverse, a, b), value, 1e-14 * (a + b)) << a << " " << b;
-        // From the high end the last digits of the integral say little of t.
+        // Near the high end the last digits of the integral say little of t.
         EXPECT_NEAR(inverse, t, 1e-6) << a << " " << b;
       }
     }

@@ -83,7 +83,7 @@ double ErrorOf(const SpectralModel& model, const Objective& objective, int band)
   return E;
 }
 
-// From any other d, s and F: by as little as a thousandth, or quite different ones.
+// Other d, s and F are tried: they differ by as little as a thousandth, or by much.
 TEST(FitBands, NoOtherParametersOfABandHaveALowerE) {
   const ModelSpec spec = Specs()[0].spec;
   const SpectralModel truth = AnalyticSpectralModel(spec, VisibleWavelengths(7));
@@ -116,7 +116,7 @@ TEST(FitBands, NoOtherParametersOfABandHaveALowerE) {
   for (int l = 0; l < 7; ++l) EXPECT_NEAR(again.objective[l] / fit.objective[l], 1, 1e-5);
 }
 
-// With the channels themselves as bands, none is worse than in the fit of all three.
+// The bands are the channels themselves, and none is worse than in the fit of all three.
 TEST(FitBands, AreNoWorseThanTheChannelsOfTheFit) {
   const ModelSpec spec = Specs()[0].spec;
   const SpectralModel truth = AnalyticSpectralModel(spec, VisibleWavelengths(7));
@@ -171,7 +171,7 @@ TEST(FitBands, HaveTheCanonicalScale) {
   for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(light.lobes[0][c] / (4 * three.s(0)[c]), 1, 1e-9);
   const std::span<const double> F = fit.model.F(0, 2);
   for (int k = 60; k < 90; ++k) {
-    EXPECT_NEAR(F[k] / F[59], (1 + 0.02 * k) / (1 + 0.02 * 59), 1e-9);  // as Start's
+    EXPECT_NEAR(F[k] / F[59], (1 + 0.02 * k) / (1 + 0.02 * 59), 1e-9);  // Start's ratio
   }
 }
 

@@ -157,7 +157,7 @@ TEST(AlbedoLimit, BeyondTheDataTheAlbedoGoesOnAsWithin) {
   }
 }
 
-// Where the samples ask for the light within, it is lowered beyond them all the same.
+// The samples hold up the albedo within the data; beyond them it is lowered all the same.
 TEST(AlbedoLimit, AtTheEndOfTheDataEntriesBeforeItStay) {
   FactorModel model = Grey(3, 3);
   BrdfTable table = TableOf(model, kGrid);

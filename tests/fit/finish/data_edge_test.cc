@@ -143,7 +143,7 @@ TEST(DataEdge, TiesWhatFewSamplesRead) {
   }
 }
 
-// What this is for: nodes at the edge trade huge values, which the data hardly see.
+// The case that the step is for: nodes at the edge trade huge values, which the data hardly see.
 TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
   const BrdfTable measured = Measured(2, 75);
   const Objective objective = MakeObjective(measured, ModelSpec::SharedFactors(2, kGrid));
@@ -163,7 +163,7 @@ TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
   EXPECT_LT(LargestBeyond(objective, measured, overshoot), 3 * Largest(measured));
 }
 
-// For a model that will be refitted anyway the refit ends once E is back.
+// If the model will be refitted anyway, the refit may end once E is back.
 TEST(DataEdge, MayEndOnceEIsBack) {
   const Objective objective = MakeObjective(Measured(2, 75), ModelSpec::SharedFactors(2, kGrid));
   const FactorModel fitted = Fitted(objective);
@@ -237,7 +237,7 @@ TEST(DataEdge, WhatWouldBeDearStaysToTheBit) {
   }
 }
 
-// Where D and F are dear, G alone.
+// G alone is tied where tying D and F would cost too much E.
 TEST(DataEdge, TiesShadowingAloneWhereTheOthersAreDear) {
   // D and F are rough, G is flat at the edge, and E small but not zero.
   FactorModel truth = RandomModel(ModelSpec::SharedFactors(1, kGrid), 1, 2);
@@ -300,7 +300,7 @@ TEST(DataEdge, TheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Before those that are tied there may be one that no sample reads.
+// An entry that no sample reads may stand before those that are tied.
 TEST(DataEdge, EntriesAreNotTiedToAnUnobservedOne) {
   BrdfTable measured = Measured(1, 75);
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);

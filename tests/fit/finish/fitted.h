@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// What joint steps make of lobes of several widths, for tests of what comes after a fit.
+// Model of joint steps from lobes of several widths, for tests of the steps after a fit.
 inline FactorModel Fitted(const Objective& objective, int max_iterations) {
   FactorModel model(objective.spec());
   std::ranges::fill(model.parameters(), 0.5);

@@ -9,7 +9,7 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-// These once reflected 1.1, 1.8 and 1.6 times what fell on them, between the angles looked at.
+// These models once reflected 1.1, 1.8 and 1.6 times the light, between the angles looked at.
 TEST(LightLimit, HoldsForModelsThatComeWithTheProgram) {
   for (const char* const name : {"aurora_white", "vch_ultra_pink", "charmeuse"}) {
     const FactorModel model = LoadModel(std::string("material:") + name).model;

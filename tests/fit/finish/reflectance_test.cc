@@ -87,7 +87,7 @@ TEST(Reflectance, IsTheMeanByCosinesAndSolidAngle) {
   EXPECT_NEAR(reflectance.Error(), std::sqrt(squares / of_measured), 1e-10);
 }
 
-// Of many samples every few are looked at, which tell by how much a model is off.
+// A large objective is judged by every n-th sample, which tells by how much a model is off.
 TEST(Reflectance, SomeSamplesStandForAll) {
   constexpr MerlGrid kFine{.theta_h = 60, .theta_d = 60, .phi_d = 90};
   const Objective objective = ObjectiveOf(Narrowing(-1, 80, kFine));
@@ -105,7 +105,7 @@ TEST(Reflectance, SomeSamplesStandForAll) {
   }
 }
 
-// What a fit loses of a highlight that it cannot follow comes back, for little of E.
+// Light that a fit loses, since it cannot follow a highlight, comes back at a small rise of E.
 TEST(Reflectance, ComesBackForLittleOfE) {
   for (const double along : {-1.0, 0.7}) {
     const Objective objective = ObjectiveOf(Narrowing(along));
@@ -121,7 +121,7 @@ TEST(Reflectance, ComesBackForLittleOfE) {
     EXPECT_LT(objective.Value(matched->model) + 30 * E * after * after,
               (1 + 30 * error * error) * E)
         << along;
-    // Where it ends, neither more light nor less would lower that.
+    // At the end neither more nor less light would lower this sum.
     const auto slope_by_s = [&](const FactorModel& at) {
       constexpr double kStep = 1e-4;
       double total[2];
@@ -168,7 +168,7 @@ TEST(Reflectance, TiedEntriesStayTied) {
   EXPECT_EQ(UntiedEntries(objective.coverage(), matched->model), untied);
 }
 
-// What samples besides the data say of other directions holds the model there.
+// Samples besides the data hold the model in the directions that they cover.
 TEST(Reflectance, AGuideHoldsWhatItSpeaksOf) {
   const BrdfTable table = Narrowing(-2, 60);
   const Objective objective =

@@ -98,7 +98,7 @@ TEST(FitStretches, IsTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(std::ranges::equal(one.parameters(), three.parameters()));
 }
 
-// Where parameters follow a step too far, they need not follow it at all.
+// If parameters would follow a step too far, they follow a part of it, or none (last argument).
 TEST(StretchStepper, ParametersFollowAsFarAsAsked) {
   const Objective objective = MakeObjective(TableOf(Glossy({.along = 0.2, .across = 0.4}), kGrid),
                                             ModelSpec::SharedFactors(1, kGrid), "appearance");

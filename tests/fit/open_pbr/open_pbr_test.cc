@@ -132,7 +132,7 @@ TEST(FormatMaterialX, NamesAndEscapes) {
               HasSubstr("doc=\"made of a &amp; b &lt; &quot;c&quot; ; Delta E is 1; nothing"));
   EXPECT_THAT(text, HasSubstr("\"base_color\" type=\"color3\" value=\"0.1, 0.25, 1e-07\""));
   EXPECT_THAT(text, Not(HasSubstr("geometry_tangent")));
-  // As many elements are opened as closed.
+  // Every element that is opened is closed.
   EXPECT_EQ(std::ranges::count(text, '<'), std::ranges::count(text, '>'));
 }
 
@@ -159,7 +159,8 @@ TEST(FormatPrincipled, HasTheInputsOfTheNode) {
   EXPECT_EQ(inputs.size(), 12U);
 }
 
-// Where OpenPBR's base is rougher below a rough coat, Blender's is as rough as it says.
+// OpenPBR's base looks rougher below a rough coat; Blender's has the roughness that it is given, so
+// it is given that of the look, (r^4 + 2 r_coat^4)^(1/4).
 TEST(FormatPrincipled, HasTheRoughnessThatIsSeenThroughTheCoat) {
   OpenPbr material;
   material.specular_roughness = 0.2;

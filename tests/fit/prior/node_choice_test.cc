@@ -43,7 +43,7 @@ std::vector<NodeCandidate> Nested() {
   return ladder;
 }
 
-// What a model with these nodes says, D up and down between them, and a little noise.
+// Samples of a model with these nodes, D up and down between them, and 5 % of noise.
 BrdfSamples OfModel(const ModelSpec& spec) {
   FactorModel model(spec);
   const std::span<double> x = model.parameters();

@@ -89,7 +89,7 @@ TEST(SyntheticPrior, AddsSamplesBetweenThoseOfTheData) {
   EXPECT_THROW(WithPrior(one, {.weight = 0}), Error);
 }
 
-// What a solver lowers is E of both; what it tells as E is that of the data, from the start on.
+// A solver lowers E of data and prior together, and tells E of the data alone, from the start on.
 TEST(SyntheticPrior, ObjectivesOfTheDataAreToldBesides) {
   const Objective data(SteelAtNodes(), Spec(6), Weightings().front(), 2);
   const Objective with_prior(data, WithPrior(data, {}));
@@ -209,8 +209,8 @@ TEST(SyntheticPrior, KeepsAnIsotropicFitTameBetweenFewSamples) {
   EXPECT_LT(1000 * with, without);
 }
 
-// 30 % of noise, and a G that is next to 0 where the data read an entry of D: that one grows, and
-// shines elsewhere.
+// With noise of 30 % and a G near 0 where the data read an entry of D, that entry grows, and shines
+// elsewhere.
 TEST(SyntheticPrior, TamesAFitThatIsWildBetweenNoisySamples) {
   const BrdfTable table = Synthesize(FindSynthMaterial("copper"), 0, 1);
   const TabulatedBrdf between(table);

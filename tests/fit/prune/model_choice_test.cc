@@ -108,7 +108,7 @@ struct Fit {
 
 Fit MakeFit() { return {Noisy(TableOf(Material(FByLobe()), kGrid), 0.01), Spec(2)}; }
 
-// What holds for whatever was chosen.
+// Checks that hold for any choice.
 void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_parameters) {
   ASSERT_FALSE(result.candidates.empty());
   const ModelCandidate& first = result.candidates[0];
@@ -134,7 +134,7 @@ void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_paramet
   EXPECT_TRUE(std::ranges::equal(expanded.parameters(), result.model.parameters()));
 }
 
-// Where the judge has the last word, none that keeps to the budget was better.
+// If the judge decides, no stored candidate within the budget has a higher score.
 void ExpectBestOfThoseWithin(const ChosenModel& result, int max_parameters) {
   for (const ModelCandidate& candidate : result.candidates) {
     // One that was only fitted is not stored yet: its ends are not tied, its scale is not fixed.
@@ -168,24 +168,24 @@ TEST(ModelChoice, TheJudgeDecides) {
   ModelChoiceOptions options = {.max_parameters = kPlenty, .judge = [](const FactorModel& model) {
                                   return model.spec().lobes;
                                 }};
-  options.stop = nullptr;  // as if it was not there
+  options.stop = nullptr;  // a null function never stops
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).model.spec().lobes, 3);
-  // To one that sees no difference the fitted model is good enough.
+  // If the judge sees no difference, the fitted model is good enough.
   options.judge = [](const FactorModel&) { return 1.0; };
   ChosenModel result = ChooseModel(fit.objective, fit.model, options);
   EXPECT_EQ(result.chosen, 0);
   EXPECT_TRUE(std::ranges::equal(result.model.parameters(), fit.model.parameters()));
-  // One that says NaN of some.
+  // The judge says NaN for some.
   options.judge = [](const FactorModel& model) {
     return model.spec().D.per_channel ? 2.0 : std::nan("");
   };
   result = ChooseModel(fit.objective, fit.model, options);
   EXPECT_TRUE(result.model.spec().D.per_channel);
   EXPECT_EQ(result.candidates[0].score, -kInfinity);
-  // Or of all.
+  // The judge says NaN for all.
   options.judge = [](const FactorModel&) { return std::nan(""); };
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).chosen, 0);
-  // There must be one.
+  // A judge is required.
   options.judge = nullptr;
   EXPECT_THROW(ChooseModel(fit.objective, fit.model, options), Error);
 }
@@ -206,7 +206,7 @@ TEST(ModelChoice, FindsWhatTheDataDoNotShare) {
   }
 }
 
-// Of the bases and what is made of them.
+// The best candidate, be it the fit or a form of it, is tried with one more lobe.
 TEST(ModelChoice, TheBestGetsALobeMore) {
   const Fit fit = MakeFit();
   for (const bool likes_sharing : {true, false}) {
@@ -255,7 +255,8 @@ TEST(ModelChoice, FinishesWhatItDoesNotThin) {
   }
 }
 
-// What looks better may look a little worse where no data are, or half as much as it gains.
+// A candidate that looks better may lose where no data are: 3 dB, or half of its gain if that is
+// more.
 TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
   const Fit fit = MakeFit();
   struct Case {
@@ -279,7 +280,8 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
   }
 }
 
-// Whatever else speaks for it. Here the data have the ring, so no smoother form is a fit of them.
+// Rings rule a candidate out, whatever its score. Here the data have the ring: no smoother form
+// fits.
 TEST(ModelChoice, WhatHasRingsUnderEvenLightIsNotTaken) {
   constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 30, .phi_d = 8};
   FactorModel material(ModelSpec::SharedFactors(1, kFine));
@@ -299,7 +301,7 @@ TEST(ModelChoice, WhatHasRingsUnderEvenLightIsNotTaken) {
   }
 }
 
-// What no sample reads is next to what some read, and a picture reads between the two.
+// Pictures interpolate between entries that samples read and neighbours that none reads.
 TEST(ModelChoice, JudgesFormsWithWhatNoSampleReadsContinued) {
   BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);
   LimitAngles(DegreesToRadians(50), Unmeasured::kBeyondMaxAngle, &measured);
@@ -343,8 +345,9 @@ double ErrorBeyond(const FactorModel& model, const BrdfTable& measured) {
   return sum / count;
 }
 
-// Where data end a form and what is thinned of it go on about as the fit does: neither fails there
-// where tables are constant beyond the last node of a thinned table, or few samples read an entry.
+// Beyond the data, a form and its thinned version continue about as the fit does: neither fails
+// there where tables are constant beyond the last node of a thinned table, or few samples read an
+// entry.
 TEST(ModelChoice, FormsGoOnBeyondTheData) {
   BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);
   LimitAngles(DegreesToRadians(50), Unmeasured::kBeyondMaxAngle, &measured);
@@ -365,7 +368,7 @@ TEST(ModelChoice, FormsGoOnBeyondTheData) {
 }
 
 TEST(ModelChoice, AModelThatHasTheFormStaysAsItIs) {
-  // What is fitted is exact already: nothing is gained, and the first of equals is chosen.
+  // The fit is exact already: nothing is gained, and the first of equals is chosen.
   const FactorModel truth = Material(Spec(1));
   Fit fit(TableOf(truth, kGrid), Spec(1), 60);
   ModelChoiceOptions options = fit.ByE(kPlenty);

@@ -88,7 +88,7 @@ TEST(NodeElimination, UpdatesAgreeWithTheReducedProblem) {
   const Fit fit;
   TableLayout layout = TableLayout::Full(fit.model.spec());
   QuadraticModel at = fit.at;
-  std::ranges::fill(at.gradient, 0.0);  // as the order takes it
+  std::ranges::fill(at.gradient, 0.0);  // the order takes it as 0
   const std::vector<Elimination> order = OrderOfElimination(at, fit.model, layout, NoLimits(12));
   ASSERT_EQ(order.size(), 12);
   for (const Elimination& next : order) {
@@ -174,7 +174,7 @@ Constraint MeanOfNeighbours(int k) {
   return c;
 }
 
-// So many that changes have to wait, and wait no longer, more than once.
+// There are so many constraints that pending changes are applied more than once.
 TEST(Tableau, ImposesAndHoldsAsTheEquationsDo) {
   Quadratic q;
   Tableau tableau = MakeTableau(q);
@@ -217,7 +217,7 @@ TEST(Tableau, TheLastTakesThePlaceOfWhatIsRemoved) {
   tableau.Remove(4);
   ASSERT_EQ(tableau.size(), kSize - 1);
   EXPECT_NEAR(tableau.h(4), lowest[kSize - 1], 1e-9);
-  // Of the last one, under its new name, and of two others.
+  // Constraint on the last parameter, under its new index, and on two others.
   Constraint renamed, named;
   for (const int k : {30, 40}) {
     renamed.Add(k, 1);

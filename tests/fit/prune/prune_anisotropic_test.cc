@@ -67,7 +67,7 @@ BrdfSamples SamplesOfModel(const FactorModel& model) {
   return samples;
 }
 
-// With a wiggle that no model has, so that E is not 0.
+// Multiplies samples by a wiggle that no model has, so that E is not 0.
 BrdfSamples Uneven(BrdfSamples samples) {
   for (size_t j = 0; j < samples.rho.size(); ++j) {
     for (double& x : samples.rho[j]) x *= 1 + 0.03 * std::sin(static_cast<double>(7 * j));
@@ -88,7 +88,7 @@ struct Pruned {
   PrunedModel model;
 };
 
-// Of a fit with two lobes on 16 phi, begun at `start`.
+// Prunes a fit of the material that begins at `start`, two lobes on 16 phi.
 Pruned PruneFitOf(const FactorModel& material, const FactorModel& start,
                   const PruneOptions& options, int threads = 2) {
   const Objective objective(Uneven(SamplesOfModel(material)), start.spec(), Weightings().front(),
@@ -132,7 +132,7 @@ TEST(PruneAnisotropic, KeepsTheRingsTowardsTheHorizon) {
 }
 
 TEST(PruneAnisotropic, LeavesOutALobeAndAzimuthsThatDoNothing) {
-  FactorModel material = Material(2, 8, 1);  // as long as wide: round
+  FactorModel material = Material(2, 8, 1);  // round: as wide as long
   for (double& s : material.s(1)) s = 0;
   const Pruned pruned =
       PruneFitOf(material, WithAxes(Material(2, 8, 1), Spec(2, 16)), {.max_relative_rise = 0.5});

@@ -118,7 +118,7 @@ TEST(Prune, ThreeDistinctLobesStayThree) {
   ExpectConsistent(fit, pruned);
 }
 
-// What is stored of a model that comes thinned is all that its pruning knows.
+// Pruning goes on from the stored entries of a model that is thinned already.
 TEST(Prune, GoesOnFromWhatIsStored) {
   const Fit fit = MakeFit(Material(2, false));
   const PrunedModel once = Prune(fit.objective, fit.model, {.max_relative_rise = 0.01});
@@ -128,7 +128,7 @@ TEST(Prune, GoesOnFromWhatIsStored) {
   const PrunedModel same = Prune(objective, once.model, options);
   EXPECT_EQ(same.num_parameters, once.num_parameters);
   EXPECT_NEAR(same.E, once.E, 1e-12 * once.E);
-  // As a model with fewer lobes, too: each of its tables of D has nodes of one or two of these.
+  // Also with fewer lobes: each table of D then has nodes of one or two earlier ones.
   options.max_relative_rise = 1e6;
   options.colour = options.shadowing = false;
   const PrunedModel further = Prune(objective, once.model, options);
@@ -218,7 +218,7 @@ TEST(Prune, WhatIsFreeGoesAtABudgetOfZero) {
     for (int c = 0; c < kChannels; ++c) measured.SetValue(c, bin, all.Value(c, bin));
   }
   Fit fit = MakeFit(measured, 2, 2);
-  // So that scales are as Prune will have them, and channels that are equal stay equal to the bit.
+  // Scales are those that Prune will set, so that equal channels stay equal to the bit.
   NormalizeScale(fit.objective.coverage(), &fit.model);
   for (const Factor factor : {Factor::kF}) {
     for (int c = 1; c < kChannels; ++c) {
@@ -348,7 +348,7 @@ TEST(Prune, DegenerateMeasurements) {
     const PrunedModel pruned = Prune(fit.objective, fit.model, {});
     EXPECT_LE(pruned.E, 1.01 * E);
     EXPECT_LE(Prune(fit.objective, fit.model, {.max_parameters = 10}).num_parameters, 10);
-    // Not a fit at all.
+    // A random model, which is no fit at all.
     FactorModel far = RandomModel(fit.model.spec(), 1, 3);
     EXPECT_LE(Prune(fit.objective, far, {}).E, 1.01 * fit.objective.Value(far));
   }

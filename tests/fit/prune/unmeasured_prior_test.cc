@@ -121,11 +121,11 @@ TEST(UnmeasuredPrior, SaysNothingThatNoMeasurementCouldSay) {
     EXPECT_TRUE(std::isfinite(with_prior.Value(RandomModel(Spec(), 3))));
   };
   expect_valid();
-  // So large at the largest theta_h that its samples have no value.
+  // D is so large at the largest theta_h that its samples have no value.
   model.table(Factor::kD, 0)[kGrid.theta_h - 1] = 1e308;
   model.s(0)[0] = 1e10;
   expect_valid();
-  // All of them.
+  // No sample of the prior has a value.
   std::ranges::fill(model.table(Factor::kD, 0), 1e308);
   EXPECT_EQ(UnmeasuredPrior(objective, model).JoinTo(objective).samples().size(),
             objective.samples().size());

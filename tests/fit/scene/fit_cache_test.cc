@@ -37,7 +37,7 @@ TEST(FitCache, WithoutAFolderKeepsNothing) {
   EXPECT_EQ(cache.Find("key"), std::nullopt);
 }
 
-// Whatever of an entry a crash or a person leaves, it is the whole entry or none.
+// A crash or a person may truncate or change an entry: it counts whole or not at all.
 TEST(FitCache, TornEntriesCountAsNone) {
   const TestDirectory directory;
   const FitCache cache(directory.path());

@@ -1,4 +1,4 @@
-// What a plan says of a model is what `trilobe score` says of the file that is written, to the bit.
+// A plan's scores of a model are those of `trilobe score` for the file that is written, to the bit.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ namespace {
 constexpr const char* kTable = "synth:plastic@18x18x36";
 constexpr const char* kCloth = "synth:velvet@4x8";
 
-// Of each kind; the first few go for all materials.
+// Budgets of each unit; the first few go for all materials.
 constexpr size_t kFew = 3;
 constexpr SceneBudget kBudgets[] = {
     {SceneBudget::Unit::kMeanDeltaE, 2},       {SceneBudget::Unit::kRelativeRise, 0.05},
@@ -131,7 +131,7 @@ void ExpectDecisionsLeadThere(const MaterialFit& fit, const SceneBudget& budget)
   EXPECT_EQ(parameters, fit.num_parameters);
 }
 
-// Of the material within each of the first budgets.
+// Checks the fits of the material within each of the first `budgets` budgets.
 void ExpectJudgedAsWritten(SceneMaterial material, const Measurement& seen, size_t budgets = kFew,
                            double rounding = 0) {
   const TestDirectory directory;
@@ -166,7 +166,7 @@ TEST(JudgedAsWritten, InLuminance) {
   ExpectJudgedAsWritten(material, InGrey(Measured(kTable, 60)), kFew, /*rounding=*/1e-13);
 }
 
-// By what is read of the measurement, of the model as its file has it.
+// Checks scores by the reads of the measurement, for the model as its file has it.
 void ExpectJudgedByReads(SceneMaterial material) {
   const TestDirectory directory;
   const SceneFitSettings settings = Settings(FitCache(directory.path()));
@@ -209,7 +209,7 @@ TEST(JudgedAsWritten, AtAListOfDirections) {
   ExpectJudgedByReads(material);
 }
 
-// Of ranges, too: the sphere of an anisotropic material shows no more than of others.
+// Ranges of directions, too: the sphere of an anisotropic material shows no more than others do.
 TEST(JudgedAsWritten, OfAnisotropicMaterials) {
   SceneMaterial material = Material(kCloth);
   ExpectJudgedAsWritten(material, Measured(kCloth));

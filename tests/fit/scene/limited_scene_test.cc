@@ -1,4 +1,4 @@
-// What a scene does not use need not be fitted; what it uses is fitted as well as ever.
+// Directions that a scene does not use need not be fitted; those it uses are fitted no worse.
 
 #include <gtest/gtest.h>
 

@@ -96,7 +96,7 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   ASSERT_TRUE(strict.full.mean_delta_e && strict.pruned.seen_psnr_db);
   const double full = *strict.full.mean_delta_e;
   ASSERT_GT(full, 0);
-  EXPECT_LE(*strict.pruned.mean_delta_e, full);  // what is free at most, or more lobes
+  EXPECT_LE(*strict.pruned.mean_delta_e, full);  // only free reductions, or more lobes
   for (const double amount : {full + 1, full + 3}) {
     const MaterialFit fit = fitted(SceneBudget::Unit::kMeanDeltaE, amount);
     EXPECT_LE(*fit.pruned.mean_delta_e, amount);
@@ -208,7 +208,7 @@ TEST(FitMaterial, NeverAddsToAModel) {
   EXPECT_EQ(fit->file.model.spec().lobes, 3);
 }
 
-// 1 % of next to nothing.
+// A share of 1 % of an E that is almost 0.
 TEST(FitMaterial, SaysThatAFractionOfAnExactFitBuysNothing) {
   SceneFitSettings settings = Settings();
   settings.source.noise = 0;
@@ -319,7 +319,7 @@ TEST(FitMaterial, InLuminanceIsGrey) {
   EXPECT_FALSE(model.spec().F.per_channel);
 }
 
-// Where nothing was measured, what was left out must not come back as light.
+// Beyond the measured angles, pruned entries must not come back as light.
 TEST(FitMaterial, MakesNoLight) {
   SceneFitSettings settings = Settings();
   settings.source.max_angle_deg = 65;

@@ -81,7 +81,7 @@ TEST(UsedSamples, CountsTakeThePlaceOfSolidAngles) {
         }
         return energy;
       }(),
-      1e-12 * objective.MeasuredEnergy());  // as a folded grid has it
+      1e-12 * objective.MeasuredEnergy());  // folded grids add up otherwise
 }
 
 TEST(SceneReads, ANoisyMeasurementOfAModelIsHardlyOff) {
@@ -112,7 +112,7 @@ TEST(SceneReads, WeighByReads) {
   const SceneReads reads(all, used, list);
   EXPECT_EQ(reads.Compare(truth, 1).mean_delta_e, 0);
   EXPECT_GT(reads.Compare(off, 1).mean_delta_e, 1);
-  // Of patches, one of which is off.
+  // Two patches, one of which is off.
   std::vector<SeenPatch> patches(
       2, {.measured = {0.2, 0.2, 0.2}, .fitted = {0.2, 0.2, 0.2}, .cosines = {1, 1}, .weight = 3});
   patches[1].fitted = {0.3, 0.3, 0.3};

@@ -313,7 +313,7 @@ TEST(Study, FiguresAreWholeFilesOfVectors) {
     EXPECT_FALSE(DrawStudyFigure(figure, std::vector{FailedRun("c", 1)}, folder / "."));
   }
   for (const StudyFigure& figure : ProfileFigures()) {
-    EXPECT_FALSE(DrawStudyFigure(figure, runs, folder / "."));  // of one problem
+    EXPECT_FALSE(DrawStudyFigure(figure, runs, folder / "."));  // runs of one problem
     ASSERT_TRUE(DrawStudyFigure(figure, RunsOnThreeProblems(), folder / ".")) << figure.name;
     EXPECT_THAT(Contents(folder / (std::string(figure.name) + ".svg")), HasSubstr("</svg>"));
   }

@@ -28,7 +28,7 @@ std::string ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }
 
-// What a parametrisation has of a pair of directions.
+// Coordinates of a pair of directions in a parametrisation.
 using Numbers = std::function<std::vector<double>(const SphericalAngles&, const DirectionPair&)>;
 
 std::vector<SphericalAngles> Pairs(bool anisotropic) {

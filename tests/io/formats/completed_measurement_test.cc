@@ -44,8 +44,8 @@ TEST(Complete, IsTheModelWhereNothingWasMeasured) {
   }
 }
 
-// Of a model's own values the ratio is 1, so that it is the model between bins, too, where a table
-// alone would cut highlights off.
+// For a model's own values the ratio is 1, so that the result is the model between bins, too, where
+// a table alone would cut highlights off.
 TEST(Complete, BendsBetweenPlacesAsTheModelDoes) {
   const Measurement own = {
       .source = "own", .kind = "test", .table = Reconstruct(Model(), "own", MerlGrid{30, 30, 60})};

@@ -68,7 +68,7 @@ TEST(CornellFile, ReadsPublishedMeasurements) {
   struct Expected {
     const char* name;
     int out_of_gamut;
-    Rgb mean;  // of the channels, before clipping them at 0, by numpy
+    Rgb mean;  // mean of the channels before clipping at 0, by numpy
   };
   for (const Expected& expected : {Expected{"garnet_red", 101, {0.101737, 0.062740, 0.063837}},
                                    Expected{"krylon_blue", 1063, {0.058535, 0.077665, 0.153173}},
@@ -77,7 +77,7 @@ TEST(CornellFile, ReadsPublishedMeasurements) {
     const Measurement measurement = LoadMeasurement(folder + expected.name + std::string(".brdf"));
     EXPECT_EQ(measurement.counts.total, 1439);
     EXPECT_EQ(measurement.counts.valid, 1439);
-    // Beyond 400 to 700 nm numpy left the spectrum out, and here it is constant.
+    // numpy left the spectrum out beyond 400 to 700 nm, where it is constant here.
     EXPECT_NEAR(measurement.out_of_gamut, expected.out_of_gamut, 12);
     Rgb mean{};
     for (const Rgb& rho : measurement.samples.rho) {

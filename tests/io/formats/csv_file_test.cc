@@ -61,7 +61,7 @@ TEST(CsvFile, HoldsScatteredSamples) {
   EXPECT_EQ(WriteMeasurement(one, directory.Path("y.csv")), "CSV, 4 samples");
   const Measurement two = LoadMeasurement(directory.Path("y.csv"));
   ExpectSameSamples(one.samples, two.samples);
-  // With the order of the directions, that half and difference angles do not tell.
+  // The order of the directions is kept, which half and difference angles do not tell.
   EXPECT_NEAR(two.samples.directions[1].theta_i, DegreesToRadians(60.5), 1e-15);
   EXPECT_NEAR(two.samples.directions[1].phi_i, DegreesToRadians(123.456), 1e-15);
 }
@@ -138,8 +138,8 @@ TEST(CsvFile, FindsReciprocalPairs) {
                                   "20,0,50,31,9,9,9\n"   // no partner
                                   "40,0,40,90,1,1,1\n"   // its own
                                   "0,0,30,0,1,1,1\n"
-                                  "30,77,0,0,1,1,1\n");  // where phi means nothing
-  measurement.anisotropic = false;                       // as of a material of which that is known
+                                  "30,77,0,0,1,1,1\n");  // phi means nothing here
+  measurement.anisotropic = false;                       // known to be isotropic
   const PairError error = ReciprocityError(measurement);
   EXPECT_EQ(error.pairs, 2);
   EXPECT_DOUBLE_EQ(error.median, 0);
@@ -152,7 +152,7 @@ TEST(CsvFile, WhereAzimuthsMatterReciprocityIsThatOfTheSameDirections) {
                                         "50,40,20,-350,1,1,1\n"  // the same, swapped
                                         "50,0,20,30,9,9,9\n"     // turned
                                         "0,5,30,10,1,1,1\n"
-                                        "30,10,0,90,3,3,3\n");  // where phi means nothing
+                                        "30,10,0,90,3,3,3\n");  // phi means nothing here
   ASSERT_TRUE(measurement.anisotropic);
   const PairError error = ReciprocityError(measurement);
   EXPECT_EQ(error.pairs, 2);

@@ -1,4 +1,4 @@
-// What is no measurement that can be read is named, with what to do.
+// Messages name files that are no readable measurement, and say what to do.
 #include "io/formats/foreign_file.h"
 
 #include <gmock/gmock.h>

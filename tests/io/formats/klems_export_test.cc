@@ -28,8 +28,8 @@ ExportedBrdf True(bool anisotropic) {
 }
 
 struct Patch {
-  double least, most;  // of sin^2 theta
-  double begin, end;   // of phi
+  double least, most;  // bounds of sin^2 theta
+  double begin, end;   // bounds of phi [rad]
   double projected() const { return (most - least) * (end - begin) / 2; }
   // The middles of n x n parts of the same projected solid angle.
   std::vector<Direction> Directions(int n, double turned) const {

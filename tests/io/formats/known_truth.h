@@ -29,7 +29,7 @@ inline Rgb TrueValue(double theta_i_deg, double phi_i_deg, double theta_o_deg, d
   return TrueMaterial(anisotropic).brdf(ToDirections(at));
 }
 
-// To as many digits as a double has.
+// Text of a number, to as many digits as a double has.
 inline std::string Text(double number) {
   std::ostringstream text;
   text.precision(17);

@@ -1,4 +1,4 @@
-// What is odd in tables that instruments, spreadsheets and programs export.
+// Oddities of tables that instruments, spreadsheets and programs export.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::string ReadError(const std::string& text, const SourceOptions& options = {}
   return ErrorOf([&] { Read(text, options); });
 }
 
-// That `text` says what kHead + kRows does, and what is noted of it.
+// Checks that `text` reads as kHead + kRows, and the note on it.
 void ExpectBoth(const std::string& text, const std::string& note,
                 const SourceOptions& options = {}) {
   const Measurement is = Read(text, options), expected = Read(kHead + kRows);
@@ -262,7 +262,7 @@ TEST(OddTable, ColumnsThatHoldSomethingElseAreNamed) {
   EXPECT_THAT(ReadError("theta_h,theta_d,theta_o,f\n0,0,1,10\n"), HasSubstr("half and difference"));
   EXPECT_THAT(ReadError("theta_o,BRDF at 20 deg,BRDF at 40 deg\n10,1,2\n"),
               HasSubstr("--columns=theta_o/theta_i"));
-  // What they ask for is read.
+  // With the flags that they ask for, the table is read.
   const Measurement asked =
       Read(angles + "CCBRDF" + rows, {.cosine_o = 1, .columns = "theta_i,theta_o,phi_o,f"});
   EXPECT_NEAR(asked.samples.rho[0][0], 1 / std::cos(DegreesToRadians(10)), 1e-12);

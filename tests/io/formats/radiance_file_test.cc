@@ -40,7 +40,7 @@ std::string Data(const std::string& wavelength, const std::string& side, const s
 
 struct Basis {
   std::string name;
-  std::vector<double> thetas;  // of the middles [degrees]
+  std::vector<double> thetas;  // middles of the rings [degrees]
   std::vector<int> patches;
 };
 const Basis kFull = {

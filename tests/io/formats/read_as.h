@@ -9,7 +9,7 @@
 
 namespace trilobe {
 
-// What the format of that name, as "csv", reads from the bytes, whoever recognises them.
+// Reads the bytes by the format of that name, such as "csv", whichever format recognises them.
 inline Measurement ReadAs(std::string_view format, std::string_view bytes,
                           const std::string& source) {
   return FindNamed("format", format, MeasurementFormats()).read(bytes, source, {});

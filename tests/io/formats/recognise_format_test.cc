@@ -1,4 +1,4 @@
-// What a file is told by, and who names it.
+// Formats are recognised by content and size, and readers name a file that is not theirs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -18,7 +18,7 @@ namespace {
 
 using testing::StartsWith;
 
-// By name; "" where no format knows the bytes.
+// Name of the format; "" if no format recognises the bytes.
 std::string FormatOf(const std::string& bytes) {
   const MeasurementFormat* const format = RecogniseFormat(bytes);
   return format == nullptr ? "" : format->name;
@@ -51,7 +51,7 @@ TEST(RecogniseFormat, GoesByTheFirstLinesOfAText) {
   EXPECT_EQ(FormatOf("# by me\nSource \tMeasured\r\nSymmetry\tAsymmetrical\n"), "zemax");
   EXPECT_EQ(FormatOf("Source\tSimulated\n"), "");
   EXPECT_EQ(FormatOf("Source Measured\nSymmetry Asymmetric\n"), "lighttools");
-  // What is wrong further on is for the reader to say.
+  // Errors further on are left to the reader.
   EXPECT_EQ(FormatOf(csv + std::string("1,\0,2\n", 6)), "csv");
   EXPECT_EQ(FormatOf(std::string("31\n400 410\n\0", 12)), "cornell");
 }
@@ -88,7 +88,7 @@ TEST(RecogniseFormat, IsWhatEveryReaderNames) {
             "file");
 }
 
-// Before its size is looked at, or its bytes are.
+// The file is named before its size or its bytes are looked at.
 TEST(RecogniseFormat, NamesALargeFile) {
   const TestDirectory directory;
   const std::string path =

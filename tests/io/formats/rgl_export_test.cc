@@ -46,7 +46,7 @@ TEST(RglExport, IsTheModelWhereOurReaderLooks) {
   EXPECT_LT(errors[990], 0.1);
 }
 
-// What Mitsuba 3 and powitacq_rgb ask for, field by field.
+// Fields that Mitsuba 3 and powitacq_rgb ask for, one by one.
 TEST(RglExport, HasTheFieldsThatRenderersRead) {
   const RglExport exported = ExportRgl(Plastic(), {.max_error = 1});
   const TensorFile file(exported.bytes, "plastic.bsdf");
@@ -67,8 +67,8 @@ TEST(RglExport, HasTheFieldsThatRenderersRead) {
   for (const double x : file.Float32("luminance", 4).values) EXPECT_GE(x, 0);
 }
 
-// What pbrt-v4 asks for (MeasuredBRDF::Create): these fields and no other type or rank, extents
-// that agree, and as many rows as columns.
+// Checks what pbrt-v4 asks for (MeasuredBRDF::Create): these fields and no other type or rank,
+// extents that agree, and as many rows as columns.
 void ExpectWhatPbrtReads(const RglExport& exported) {
   const TensorFile file(exported.bytes, "x.bsdf");
   const int p = exported.phi_i, t = exported.theta_i, n = exported.resolution;
@@ -104,7 +104,7 @@ TEST(RglExport, SpectralFilesHaveTheFieldsThatPbrtReads) {
                                 {.max_error = 1, .spectral = true}));
 }
 
-// And the spectra of a file are read, as are its colours.
+// A spectral file can be read back, its spectra as well as its colours.
 TEST(RglExport, ASpectralModelKeepsItsWavelengths) {
   const SpectralModel model =
       AnalyticSpectralModel(ModelSpec::SharedFactors(2), VisibleWavelengths(7));

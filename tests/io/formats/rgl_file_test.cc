@@ -416,7 +416,7 @@ TinyRgl FileOf(const std::function<Rgb(const DirectionPair&)>& brdf, double phi_
     const float* p = values + r * columns + c;
     return (1 - v) * ((1 - u) * p[0] + u * p[1]) + v * ((1 - u) * p[columns] + u * p[columns + 1]);
   };
-  // Where int_0^x f / int_0^1 f is `part`, f being linear in cells of 1 / kFine.
+  // Solves int_0^x f / int_0^1 f = `part` for x, f being linear in cells of 1 / kFine.
   const auto find = [](const std::function<double(double)>& f, double part) {
     const auto integral = [&](double end) {
       double sum = 0;
@@ -440,7 +440,7 @@ TinyRgl FileOf(const std::function<Rgb(const DirectionPair&)>& brdf, double phi_
     const float* density = &file.vndf[slice * file.rows * file.columns];
     const double theta_i = std::min<double>(file.theta_i[slice % thetas], kPi / 2);
     const double phi_i = file.phi_i[slice / thetas];
-    const auto row_total = [&](double y) {  // of a bilinear row, by the trapezoidal rule
+    const auto row_total = [&](double y) {  // integral of a bilinear row, by the trapezoidal rule
       double sum = 0;
       for (int c = 0; c < file.columns; ++c) {
         const double weight = c == 0 || c == file.columns - 1 ? 0.5 : 1;
@@ -512,7 +512,7 @@ TEST(RglFile, AThetaJustBelow0Is0) {
   EXPECT_EQ(measurement.samples.rho, expected.samples.rho);
 }
 
-// What a symmetry repeats is not in the file, but in the samples and the function.
+// Directions that a symmetry repeats are not in the file, but in the samples and the function.
 TEST(RglFile, UndoesTheSymmetriesThatFilesLeaveOut) {
   const auto turned_alike = [](const DirectionPair& pair) {
     const Rgb a = Grained(pair);
@@ -557,7 +557,8 @@ TEST(RglFile, LeavesOutNodesThatWereNotMeasured) {
   EXPECT_EQ(all.counts.extrapolated + all.counts.beyond_nodes, 0);
   EXPECT_GT(part.counts.extrapolated, 0);
   EXPECT_LE(part.counts.extrapolated, 4 * 4);
-  // Of the last theta_i but one, 1.1, and above it for theta_o.
+  // The last theta_i but one, 1.1, is the last with data; samples with a theta_o above it are
+  // beyond, too.
   EXPECT_GT(part.counts.beyond_nodes, 0);
   EXPECT_NEAR(part.max_theta, 1.1, 1e-6);
   EXPECT_EQ(part.counts.valid + part.counts.extrapolated + part.counts.beyond_nodes,

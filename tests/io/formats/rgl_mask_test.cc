@@ -1,4 +1,4 @@
-// Which bins of an RGL file count as measured (docs/samples.md).
+// Rules by which bins of an RGL file count as measured (docs/samples.md).
 
 #include "io/formats/rgl_mask.h"
 
@@ -83,7 +83,7 @@ TEST(RglMask, TheFirstColumnTellsWhatMeansMeasured) {
     file.valid.assign(file.valid.size(), one);
     for (const double theta_m : {0.1, 0.6, 0.77}) EXPECT_TRUE(Measured(file, 0.2, theta_m));
   }
-  // Of 40 entries 1 may be odd, as long as it is clear what is meant.
+  // One entry of 40 may be odd, as long as the meaning is clear.
   TinyRgl file = MaskedRgl();
   file.rgb_rows = 20;
   file.FillConstant(4, 1, 1);

@@ -62,7 +62,7 @@ TEST(LoadTable, DecidesWhatCountsAsMeasured) {
   const BinCounts all = CountBins(LoadTable(path));
   EXPECT_GT(all.extrapolated, 0);
   EXPECT_GT(all.beyond_nodes, 0);
-  // What was left out before keeps its reason.
+  // Bins that were left out before keep their reason.
   const BrdfTable part = LoadTable(path, {.max_angle_deg = 40});
   EXPECT_DOUBLE_EQ(RadiansToDegrees(part.max_theta), 40);
   EXPECT_EQ(CountBins(part).extrapolated, all.extrapolated);
@@ -182,7 +182,7 @@ TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
   }
 }
 
-// Where a corruption makes a detector stand in its own light, it is left out of either.
+// Both leave out the angles at which a corruption makes the detector stand in its own light.
 TEST(LoadMeasurement, TreatsSyntheticDataAsThoseOfAFile) {
   const TestDirectory directory;
   const std::string source = "synth:shot_silk@9x36", path = directory.Path("silk.csv");
@@ -236,7 +236,7 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
   }
 }
 
-// By what the highlight shows, which is within a tenth of the tilt.
+// The tilt is taken from the highlight, which shows it within a tenth.
 TEST(LoadMeasurement, TakesOutTheTiltThatTheHighlightShows) {
   const std::string source = "synth:aluminium@60x30x60";
   const SourceOptions shown = {.corrupt = "tilt:1", .tilt_deg = std::nullopt, .outliers = true};

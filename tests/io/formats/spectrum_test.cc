@@ -23,7 +23,7 @@ std::vector<double> Wavelengths(double first, double last, double step) {
   return wavelengths;
 }
 
-// Of linear sRGB (IEC 61966-2-1, Annex).
+// CIE XYZ of linear sRGB (IEC 61966-2-1, Annex).
 std::array<double, 3> ToXyz(const Rgb& rgb) {
   return {0.4124564 * rgb[0] + 0.3575761 * rgb[1] + 0.1804375 * rgb[2],
           0.2126729 * rgb[0] + 0.7151522 * rgb[1] + 0.0721750 * rgb[2],
@@ -121,7 +121,7 @@ TEST(SmoothSpectra, HaveTheColoursAskedFor) {
   const SpectralColor color(wavelengths, "test");
   Random random(1);
   for (int k = 0; k < 2000; ++k) {
-    const double size = std::exp(random.Uniform(-12, 8));  // as BRDFs are, beyond 1
+    const double size = std::exp(random.Uniform(-12, 8));  // BRDFs exceed 1
     const Rgb rgb = {size * random.Uniform(0.2, 1), size * random.Uniform(0.2, 1),
                      size * random.Uniform(0.2, 1)};
     const auto spectrum = spectra(rgb);

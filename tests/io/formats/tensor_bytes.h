@@ -57,8 +57,8 @@ inline std::string TensorBytes(const std::vector<TensorField>& fields) {
 struct TinyRgl {
   std::vector<float> phi_i = {0};
   std::vector<float> theta_i = {0, 0.6F, 1.5707964F};
-  int rows = 4, columns = 5;          // of vndf
-  int rgb_rows = 3, rgb_columns = 4;  // of rgb
+  int rows = 4, columns = 5;          // extents of vndf
+  int rgb_rows = 3, rgb_columns = 4;  // extents of rgb
   std::vector<float> ndf, sigma;      // [2][columns]
   std::vector<float> vndf;            // [phi_i][theta_i][rows][columns]
   std::vector<float> rgb;             // [phi_i][theta_i][3][rgb_rows][rgb_columns]

@@ -49,7 +49,7 @@ void ExpectSameSamples(const Measurement& is, const Measurement& expected) {
   EXPECT_EQ(is.anisotropic, expected.anisotropic);
 }
 
-// That `text` is kPlain in another form, and what is said of it.
+// Checks that `text` is kPlain in another form, and the note on it.
 void ExpectPlain(const std::string& text, const std::string& note,
                  const SourceOptions& options = {}) {
   const Measurement read = Read(text, options, "x.txt");
@@ -240,7 +240,7 @@ TEST(TextTable, BandsPicksWavelengths) {
   EXPECT_EQ(one.samples.spectra->wavelengths, (std::vector<double>{550}));
   EXPECT_THAT(one.notes,
               ElementsAre(HasSubstr("one value for all channels, 550 nm of 7 wavelengths")));
-  // As if there were no others: what is invalid at 400 nm does not count.
+  // Bands that are not asked for do not count: the invalid value at 400 nm is ignored.
   const std::vector<double> five = {450, 500, 550, 600, 650};
   const Measurement some = read("450,500,550,600,650");
   EXPECT_EQ(some.samples.rho[0], SpectralColor(five, "x")(std::vector<double>{.2, .3, .4, .5, .6}));
@@ -249,7 +249,7 @@ TEST(TextTable, BandsPicksWavelengths) {
   EXPECT_EQ(read("").samples.size(), 1);
   EXPECT_EQ(Read(kPlain, {.bands = "550"}).notes,
             (std::vector<std::string>{"--bands is of spectra, and changes nothing here"}));
-  // Beside a colour, too.
+  // A band beside a colour can be chosen, too.
   EXPECT_EQ(
       Read("theta_i,theta_o,phi_o,r,g,b,940nm\n5,10,0,1,2,3,.25\n", {.bands = "940"}).samples.rho,
       (std::vector<Rgb>{{.25, .25, .25}}));

@@ -90,7 +90,7 @@ TEST(ZemaxExport, TisIsTheAlbedoOfEachIncidenceAndChannel) {
   }
 }
 
-// As a program that draws from the table integrates it.
+// Integrates the values as a program does that draws from the table.
 TEST(ZemaxExport, ValuesReflectTheLightOfTheMaterial) {
   const Measurement measurement =
       ReadAs("zemax", ExportZemax(True(false), {.max_error = 1e-3}).bytes, "x.bsdf");

@@ -136,7 +136,7 @@ TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
             1);
 }
 
-// Of a material that is known: values at the directions that the format says, in blocks.
+// File of a known material: values at the directions of the format, in blocks.
 const std::vector<double> kIncidences = {10, 50}, kAzimuths = {0, 45, 90, 135, 180},
                           kRadials = {0, 5, 30};
 

@@ -118,7 +118,7 @@ TEST(ModelFile, KeepsUnobservedBinsAndTheStoryOfTheFit) {
   EXPECT_EQ(read.fit.solver, "awls");
   EXPECT_EQ(read.fit.objective, 0.1 + 0.2);
   EXPECT_EQ(read.fit.iterations, 17);
-  // Of the path, the name of the file.
+  // The stored source is the file's name, without its path.
   EXPECT_EQ(read.fit.source, "\xc3\xa9.binary");
   EXPECT_EQ(read.fit.valid_samples, 1096216);
   EXPECT_EQ(read.fit.max_angle, 78.5);
@@ -324,7 +324,7 @@ TEST(ModelFile, RefusesNumbersThatAreNoneOrNegative) {
           << value;
     }
   }
-  // What JSON cannot say, or a double cannot hold.
+  // Numbers that JSON cannot say, or a double cannot hold.
   const std::string text = FormatModel(RandomModel(ModelSpec::SharedFactors(3)));
   const size_t number = text.find("\"d\": [") + 6;
   for (const char* literal :

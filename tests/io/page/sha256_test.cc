@@ -9,7 +9,7 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-// Of FIPS 180-4's examples, and of lengths about that of a block, by Python's hashlib.
+// Hashes of FIPS 180-4's examples, and of lengths about that of a block, by Python's hashlib.
 TEST(Sha256, IsThatOfOthers) {
   EXPECT_EQ(Base64(Sha256("")), "47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
   EXPECT_EQ(Base64(Sha256("abc")), "ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");

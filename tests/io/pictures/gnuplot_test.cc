@@ -281,7 +281,7 @@ TEST_F(GnuplotTest, FactorsSayWhatALobeIsAndWhatIsLeftOut) {
   EXPECT_THAT(script, testing::HasSubstr("$2 > 0 ? '<0.0005'"));
 }
 
-// What is dark there does not matter to the eye; what was not measured says nothing.
+// Slices that are hardly seen are pale, and dotted where nothing was measured.
 TEST_F(GnuplotTest, SlicesSayWhatIsHardlySeenAndWhatWasNotMeasured) {
   const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
   BrdfTable measured = Synthesize(FindSynthMaterial("plastic"), 0, 1, grid);
@@ -391,7 +391,7 @@ TEST_F(GnuplotTest, WritesTwoSpheresSideBySide) {
   EXPECT_GT(ReadFile(Path("grey.png")).size(), ReadFile(Path("black.png")).size());
 }
 
-// Of scattered samples, too, those in the plane of incidence are held against the fit.
+// Scattered samples in the plane of incidence are drawn against the fit, too.
 TEST_F(GnuplotTest, DrawsScatteredSamplesAgainstTheFit) {
   SampleCollector collector("few.csv", "test");
   for (int i = 10; i < 80; i += 20) {
@@ -410,7 +410,7 @@ TEST_F(GnuplotTest, DrawsScatteredSamplesAgainstTheFit) {
   EXPECT_FALSE(HasSlices(none));
 }
 
-// What was not measured is shown, and its difference left out.
+// Unmeasured parts are shown, and left out of the difference.
 TEST_F(GnuplotTest, DrawsSpheresThatWereMeasuredInPart) {
   const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
   BrdfTable measured = Synthesize(FindSynthMaterial("plastic"), 0, 1, grid);

@@ -203,7 +203,7 @@ TEST(CompareAppearance, ATenthMoreIsATenthOff) {
   }
 }
 
-// By a Lambertian measurement whose numbers are known: 1/pi sr^-1 reflects all light.
+// Lambertian materials have known albedos: 1/pi sr^-1 reflects all light.
 TEST(CompareAppearance, KnowsTheAlbedoOfALambertianMaterial) {
   const AppearanceReport report = CompareAppearance(Constant(0.5 / kPi), Grey(0.25 / kPi), Quick());
   for (size_t k = 0; k < report.albedo.theta_i.size(); ++k) {
@@ -218,7 +218,7 @@ TEST(CompareAppearance, KnowsTheAlbedoOfALambertianMaterial) {
   EXPECT_NEAR(report.between_centers.relative, 0.25 / kPi / (0.5 / kPi + 1e-3), 1e-12);
 }
 
-// What samples at bin centres cannot tell: a ripple that vanishes there.
+// A ripple that vanishes at bin centres shows between them only.
 TEST(CompareAppearance, LooksBetweenTheCentres) {
   const BrdfTable table = Plastic();
   const TabulatedBrdf brdf(table);
@@ -237,7 +237,7 @@ TEST(CompareAppearance, LooksBetweenTheCentres) {
   EXPECT_LT(report.sphere.psnr_db, 40);
 }
 
-// As a renderer would: no light is taken away.
+// Renderers clamp negative values, too: no light is taken away.
 TEST(CompareAppearance, ANegativeValueIsBlack) {
   const BrdfTable table = Constant(0.1);
   EXPECT_EQ(Numbers(CompareAppearance(table, Grey(-5), Quick())),
@@ -336,7 +336,7 @@ TEST(CompareAppearance, OverflowIsAnError) {
   for (const double bad : {1e308, kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT(ErrorOf(table, Grey(bad)), testing::HasSubstr("overflow")) << bad;
   }
-  // Beyond the data only.
+  // The overflow is beyond the data only.
   BrdfTable part = table;
   Unmeasure([](const HalfDiffAngles& angles) { return angles.theta_d > 1; }, &part);
   const AngularBrdf unbounded = [](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {

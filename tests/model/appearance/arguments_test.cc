@@ -1,4 +1,4 @@
-// What a caller may give that is no such thing: an Error in one line, and no crash.
+// Invalid arguments give an Error of one line, and no crash.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -37,7 +37,7 @@ Environment Speckled(int width, int height) {
   return environment;
 }
 
-// Where a direction lies in the picture, as the header says it.
+// Row and column of a direction in the picture, by the header's convention.
 double RowOf(const Environment& environment, const Direction& d) {
   return std::acos(std::clamp(d[1], -1.0, 1.0)) / kPi * environment.height;
 }

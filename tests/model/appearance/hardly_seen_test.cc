@@ -28,7 +28,7 @@ TEST(HardlySeenTest, IsGrazingLightFarFromTheHighlight) {
   EXPECT_FALSE(at(45, 20));
 }
 
-// Where the fit alone shines, that is seen.
+// A bin in which only the fit shines is seen.
 TEST(HardlySeenTest, LooksAtTheFitToo) {
   const BrdfTable plastic = Synthesize(FindSynthMaterial("plastic"), 0, 1, kGrid);
   BrdfTable fitted = plastic;

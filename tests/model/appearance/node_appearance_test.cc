@@ -110,7 +110,7 @@ TEST(NodeAppearance, OfTheFormulaIsExactBetweenTheNodesToo) {
   EXPECT_GT(tenth.sphere.mean_delta_e, 1);
 }
 
-// Beyond the last theta a material may be anything.
+// The model may have any values beyond the last theta.
 TEST(NodeAppearance, LooksAtMeasuredDirectionsAlone) {
   const NodeBrdf grey = Grey(0.1);
   const AppearanceReport report = CompareAppearance(

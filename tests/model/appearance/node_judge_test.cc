@@ -35,7 +35,7 @@ TEST(NodeJudge, PutsTheNearestFirst) {
   EXPECT_EQ(judge(linen), NodeJudge(*data.nodes, Times(linen, 1.01), Quick(3))(linen));
 }
 
-// Of narrow highlights 15 degrees apart interpolation is wrong, and what is nearer to it is no
+// Interpolation between narrow highlights 15 degrees apart is wrong, and a model nearer to it is no
 // better.
 TEST(NodeJudge, DoesNotTakeInterpolationForTheMaterial) {
   const Measurement measured = LoadMeasurement("synth:rolled_brass@6x24");

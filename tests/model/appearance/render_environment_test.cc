@@ -84,7 +84,7 @@ TEST(RenderSphereUnder, ShowsTheEnvironmentInAMirror) {
   EXPECT_LT(far, 0.1 * pixels);  // the edges of lamps
 }
 
-// What points show of a rough material, this does, too, but for what a wide cell carries over the
+// Many points show the same of a rough material, but for light that a wide cell carries over the
 // horizon, into the dark half below.
 TEST(RenderSphereUnder, AgreesWithManyPoints) {
   const AngularBrdf brdf = [](const HalfDiffAngles& angles, const Cosines&) {
@@ -103,9 +103,9 @@ TEST(RenderSphereUnder, AgreesWithManyPoints) {
   EXPECT_LT(error, 0.06 * sum);
 }
 
-// What a fourth of the pixels says of materials is what each of them says; whether or not there is
-// one in the middle, which turns take to itself, and for what is not the same on both sides of the
-// plane of light and eye.
+// Rendering a quarter of the pixels and turning it gives each pixel its own value: with a pixel in
+// the middle (odd sizes), which turns map to itself, or without, and for materials that differ on
+// the two sides of the plane of light and eye.
 TEST(RenderSphereUnder, AgreesWithEachPixelByItself) {
   const AngularBrdf brdf = [](const HalfDiffAngles& angles, const Cosines& cosines) {
     const Rgb gloss = Gloss(5)(angles, cosines);

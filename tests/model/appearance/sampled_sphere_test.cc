@@ -25,7 +25,7 @@ Rgb Paint(const SphericalAngles& at) {
   return {0.002 + highlight, 0.03 + highlight, 0.12 + highlight};
 }
 
-// As of a goniometer, every 10 degrees up to 80.
+// Samples of a goniometer, every 10 degrees up to 80.
 BrdfSamples SamplesOf(const SphericalBrdf& brdf) {
   BrdfSamples samples;
   for (int i = 0; i <= 80; i += 10) {

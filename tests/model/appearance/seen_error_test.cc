@@ -43,7 +43,7 @@ TEST(SeenError, LessLightIsNoOtherColour) {
   SeenErrorSum less;
   less.Add({0.6, 0.3, 0.05}, {0.3, 0.15, 0.025}, false);
   EXPECT_NEAR(less.Total().at(SeenPlace::kRest).color, 0, 1e-12);
-  // Nor is it one that the picture clips, and that turns yellow there.
+  // A colour that the picture clips, and that turns yellow there, is no colour error either.
   SeenErrorSum clipped;
   clipped.Add({4, 2, 0.2}, {0.8, 0.4, 0.04}, false);
   EXPECT_NEAR(clipped.Total().at(SeenPlace::kHighlights).color, 0, 1e-12);
@@ -97,7 +97,7 @@ BrdfSamples Scattered(const std::vector<double>& thetas_deg, const std::vector<R
   return samples;
 }
 
-// Of 0.35 / cos 0 each the exposure is 1, whatever the unit of the values.
+// With 0.35 / cos theta_h each, the exposure is 1, whatever the unit of the values.
 TEST(CompareSamples, SeesEachAsAPatchUnderItsOwnLight) {
   for (const double unit : {1.0, 1e-6, 1e6}) {
     const BrdfSamples samples = Scattered(

@@ -31,7 +31,7 @@ Direction Cross(const Direction& a, const Direction& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// From all sides, from the eye itself, and from behind.
+// Lights from all sides, from the eye itself, and from behind.
 std::vector<Light> TestLights() {
   Random random(3);
   std::vector<Light> lights = {{{0, 0, 1}, {1, 2, 3}},
@@ -201,7 +201,7 @@ TEST(SphereTest, WithoutMaterialsOrLightsThereIsNothingToSee) {
   EXPECT_TRUE(std::ranges::all_of(image.radiance, [](const Rgb& x) { return x == Rgb{}; }));
 }
 
-// Of the pixels one in four, in all parts of the sphere, as it is among all of them.
+// One pixel in four is rendered, in all parts of the sphere, with the value it has among all.
 TEST(SphereTest, FewerPixelsAreSomeOfAll) {
   const BrdfTable table = RandomTable(kGrid, 4);
   const TabulatedBrdf brdf(table);

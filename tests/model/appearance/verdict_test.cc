@@ -60,7 +60,7 @@ TEST(Verdict, SaysWhere) {
   EXPECT_EQ(Words(VerdictOf(MostIn(SeenPlace::kHighlights, 4, 8))), "visible in highlights");
   EXPECT_EQ(Words(VerdictOf(MostIn(SeenPlace::kGrazing, 6, 20))),
             "plainly visible at grazing angles");
-  // Of two the one that stands out more.
+  // Among two places, the one that stands out more is named.
   SeenError both = MostIn(SeenPlace::kHighlights, 4, 8);
   At(SeenPlace::kGrazing, &both) = {.share = 0.2, .squares = 0.4, .mean_delta_e = 8};
   EXPECT_EQ(VerdictOf(both).place, SeenPlace::kHighlights);
@@ -81,7 +81,7 @@ TEST(Verdict, SaysWhatIsWrong) {
   EXPECT_EQ(Words(VerdictOf(error)), "visible in highlights");
   highlights.color = 0.8;
   EXPECT_EQ(Words(VerdictOf(error)), "visible in highlights: wrong colour");
-  // What is wrong elsewhere does not matter then.
+  // Faults elsewhere do not matter then.
   error = MostIn(SeenPlace::kGrazing, 4, 8);
   At(SeenPlace::kRest, &error).color = 1;
   EXPECT_EQ(VerdictOf(error).fault, Fault::kDifferent);
@@ -93,7 +93,7 @@ TEST(Verdict, SaysWhatIsWrong) {
   EXPECT_EQ(Words(VerdictOf(error)), "visible all over: too dark");
 }
 
-// What nobody sees is neither here nor there.
+// Faults of an invisible difference are not named.
 TEST(Verdict, OfWhatCannotBeSeenSaysNoMore) {
   SeenError error = MostIn(SeenPlace::kHighlights, 0.3, 1);
   At(SeenPlace::kHighlights, &error).color = 1;

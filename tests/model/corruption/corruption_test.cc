@@ -47,7 +47,7 @@ std::string MessageOf(const std::function<void()>& work) {
 
 struct Changed {
   int lost = 0;      // samples
-  int changed = 0;   // of those that are left
+  int changed = 0;   // samples left, with another value
   double ratio = 0;  // the largest, of new and old values
   double smallest = 0;
 };
@@ -266,7 +266,7 @@ TEST(Corruption, QuantizedSignalsAreMultiplesOfTheStep) {
   }
 }
 
-// Of a highlight about the normal: tilted by x, it is where theta_h is x, towards the light.
+// A highlight about the normal, tilted by x, moves to theta_h = x, towards the light.
 TEST(Corruption, ATiltMovesTheHighlight) {
   const std::string source = "synth:copper@45x30x60";
   const BrdfSamples samples = SamplesOf(Corrupted(source, "tilt:4"));
@@ -302,7 +302,7 @@ TEST(Corruption, KindsHappenInTheirOrder) {
   ASSERT_EQ(two.size(), 2);
   EXPECT_EQ(two[0].kind->name, "gaps");
   EXPECT_EQ(two[1].strength, 0.01);
-  // What was clipped is noisy; what was noisy is clipped.
+  // Corruptions apply in the order given: clipped values get noise, noisy values are clipped.
   const auto largest = [](const std::string& text) {
     const BrdfSamples samples = SamplesOf(Corrupted(kTable, text));
     double all = 0;

@@ -80,7 +80,7 @@ TEST(BsdfSampling, DrawsWithItsDensity) {
 TEST(BsdfSampling, WeightsAreBoundedAndAddUpToTheAlbedo) {
   constexpr int kDraws = kSanitized ? 2000 : 10000;
   for (const auto& [name, model] : TestMaterials()) {
-    // Whose neighbours have nothing to do with each other; and where a lobe is narrower by
+    // Left out: a model whose neighbouring entries are unrelated, and one whose lobe is narrower by
     // 1 / cos^2 theta_d, which has more detail towards grazing than the table.
     if (name == "random numbers" || name == "stretched to the limits") continue;
     const Bsdf<double> bsdf(model);
@@ -117,7 +117,7 @@ TEST(BsdfSampling, WeightsOfBundledMaterialsAreBounded) {
   }
 }
 
-// As fits of measured materials may be: G differs from one entry to the next by five times.
+// Fits of measured materials may have such a G: neighbouring entries differ by a factor of five.
 TEST(BsdfSampling, AlbedoFollowsEachEntryOfG) {
   FactorModel model = AnalyticModel(ModelSpec::SharedFactors(2), 0.2, 0.05);
   for (int t = 0; t < model.spec().num_tables(Factor::kG); ++t) {

@@ -73,7 +73,7 @@ TEST(ReadTerms, WhatIsWrongIsNamed) {
   EXPECT_THAT(error_of("\"size\": 8", "\"size\": 9"), HasSubstr("must have 9 entries"));
 }
 
-// Whatever is changed is read, or refused by a line that begins with the file's name.
+// A changed file is read, or refused by a line that begins with the file's name.
 TEST(ReadTerms, SpoiltFilesAreRefused) {
   const std::string text = FormatTerms({.model = TermModel::Of(RandomModel(SmallSpec(), 3))});
   Random random(7);

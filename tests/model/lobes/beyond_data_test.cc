@@ -53,7 +53,7 @@ std::vector<double> Coverage(const FactorModel& model) {
   return coverage;
 }
 
-// What the lobes of a table of D reflect per half vector that reads an entry.
+// Light that the lobes of a table of D reflect, per half vector that reads an entry.
 std::vector<double> Reflected(const FactorModel& model, int table) {
   const std::vector<double> everywhere(model.parameters().size(), 1);
   FactorModel flat(model.spec());
@@ -123,7 +123,7 @@ TEST(ContinueBeyondData, WhatReflectsLessStaysAsItIs) {
   }
 }
 
-// Where all factors are alike there is nothing to keep down, however half vectors read D.
+// With equal factors there is nothing to keep down, however half vectors read D.
 TEST(ContinueBeyondData, AFlatLobeStaysFlat) {
   ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   spec.stretches = Stretches({{.along = -2, .across = -2}, {.along = 0.5, .across = 0.2}});

@@ -64,8 +64,8 @@ double MeanLog(std::span<const double> table) {
   return sum / positive;
 }
 
-// What hangs together: of lobes and channels, in the order of s, those that share tables of F or
-// of G have the same number.
+// Connected components: lobes and channels, in the order of s, that share tables of F or of G have
+// the same number.
 std::vector<int> Groups(const ModelSpec& spec) {
   std::vector<int> group(kChannels * spec.lobes);
   std::iota(group.begin(), group.end(), 0);
@@ -278,7 +278,7 @@ TEST(Gauge, SIsTheAlbedoHoweverFarFAndGTrade) {
   }
 }
 
-// Of a thinned model, tables stay what they are beyond the data.
+// Thinned models are scaled only: their tables keep their shape beyond the data.
 TEST(Gauge, TheScaleAloneLeavesUnobservedEntriesInProportion) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(TableWithGaps(), spec);
@@ -329,7 +329,7 @@ TEST(Gauge, UnobservedBinsAreFilledFromTheirNeighbours) {
     std::vector<double> x, y;
     const std::vector<double>& coverage = objective.coverage();
     for (int j = 0; j < k; ++j) {
-      // Those that hardly a sample reads have no say.
+      // Entries that hardly a sample reads do not count.
       const bool well = j < 3 || coverage[offset + j] >= 0.05 * coverage[offset + j - 3];
       if (unobserved[offset + j] || !well) continue;
       x.push_back(spec.axis(factor).Theta(j));

@@ -84,7 +84,7 @@ TEST(LobeLight, AgreesWithTheDirectionalAlbedosOfEachPart) {
               1e-12);
 }
 
-// Whatever a ring of D is.
+// Rings of D are bins of theta_h, or nodes over azimuths.
 TEST(LobeLight, SameBitsForAnyNumberOfThreads) {
   FactorModel anisotropic(ModelSpec::Anisotropic(2));
   for (double& x : anisotropic.parameters()) x = 0.5;

@@ -33,7 +33,7 @@ double LargestDifference(const FactorModel& a, const FactorModel& b) {
   return largest;
 }
 
-// Those that can be split, with every one of their lobes.
+// Calls `visit` for each lobe of the models whose lobes can be split.
 template <typename Visit>
 void ForEachLobe(const Visit& visit) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
@@ -150,7 +150,7 @@ TEST(StrongestLobe, HasTheLargestSumOfS) {
   EXPECT_EQ(StrongestLobe(model), 1);
   set(2, {4, 4, 0});
   EXPECT_EQ(StrongestLobe(model), 2);
-  set(0, {8, 0, 0});  // of equals the first
+  set(0, {8, 0, 0});  // the first of equals
   EXPECT_EQ(StrongestLobe(model), 0);
   for (int m = 0; m < 3; ++m) set(m, {0, 0, 0});
   EXPECT_EQ(StrongestLobe(model), 0);

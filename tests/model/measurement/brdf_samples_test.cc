@@ -16,7 +16,7 @@ constexpr MerlGrid kEven{.theta_h = 10, .theta_d = 9, .phi_d = 24};
 constexpr MerlGrid kFine{.theta_h = 10, .theta_d = 8, .phi_d = 24};
 constexpr MerlGrid kOdd{.theta_h = 10, .theta_d = 9, .phi_d = 23};  // one bin is its own mirror
 
-// As long a row as MERL's has, for strides up to that of the solver multistart.
+// Rows as long as MERL's, for strides up to that of the solver multistart.
 constexpr MerlGrid kLong{.theta_h = 7, .theta_d = 6, .phi_d = 180};
 constexpr int kLongestStride = 24;
 
@@ -137,7 +137,7 @@ TEST(Thinned, KeepsMirroredPairsTogether) {
   }
 }
 
-// Of n pairs in a row every stride-th is the n / stride, rounded up or down.
+// Thinning keeps n / stride of n pairs in a row, rounded up or down.
 TEST(Thinned, TakesTheSameShareOfEveryRow) {
   for (const MerlGrid& grid : {kEven, kOdd, kLong}) {
     const BrdfSamples samples = Dense(grid);
@@ -157,7 +157,7 @@ TEST(Thinned, TakesTheSameShareOfEveryRow) {
   }
 }
 
-// Where neighbouring rows kept the same phi_d, whole stripes of directions would go unseen.
+// If neighbouring rows kept the same phi_d, whole stripes of directions would go unseen.
 TEST(Thinned, BeginsNeighbouringRowsApart) {
   const BrdfSamples samples = Dense(kLong);
   for (int stride = 2; stride <= kLongestStride; ++stride) {

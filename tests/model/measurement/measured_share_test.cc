@@ -24,7 +24,7 @@ BrdfSamples At(const std::vector<SphericalAngles>& directions) {
   return samples;
 }
 
-// Of all pairs up to an angle the share is sin^4: both directions keep to it.
+// All pairs with both directions up to theta have the share sin^4 theta.
 TEST(MeasuredShare, OfATableIsThatOfItsDirections) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   std::ranges::fill(model.parameters(), 1.0);

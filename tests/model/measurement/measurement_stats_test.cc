@@ -119,7 +119,7 @@ TEST(ReciprocityErrorTest, ComparesSwappedDirections) {
     return Rgb{x, x, x};
   };
   EXPECT_NEAR(ReciprocityError(lopsided, kGrid, 2).median, 1, 1e-12);
-  // Where one order was not measured there is no pair.
+  // There is no pair if one order was not measured.
   const auto measured = [](const DirectionPair& pair) { return pair.wi[0] <= pair.wo[0]; };
   EXPECT_LT(ReciprocityError(lopsided, kGrid, 2, measured).pairs, none.pairs / 2);
   EXPECT_EQ(ReciprocityError(lopsided, kGrid, 2, measured).median, 0);

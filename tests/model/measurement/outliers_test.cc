@@ -203,7 +203,7 @@ TEST(Outliers, WhereAzimuthsMatterOnlyNothingIsOne) {
   EXPECT_EQ(CountsOf(left_of("outliers:0.05")).valid, all);
   const Measurement left = left_of("zeros:0.05");
   EXPECT_NEAR(CountsOf(left).valid, 0.95 * all, 0.02 * all);
-  // But where both of a pair are.
+  // Zeros stay only where both values of a reciprocal pair are 0.
   EXPECT_LE(std::ranges::count(left.samples.rho, Rgb{}), 1.5 * 0.05 * 0.05 * all);
   // Velvet reflects nothing from some directions, into others and back.
   Measurement velvet = LoadMeasurement("synth:velvet@6x24");
@@ -239,7 +239,7 @@ TEST(Outliers, TheirLightIsWhatTheyAreOffBy) {
 TEST(Outliers, FewAndDarkOnesStay) {
   const Measurement smooth = LoadMeasurement("synth:plastic@40x40x40");
   const BrdfSamples samples = SamplesOf(smooth);
-  // Of the brightest samples, and of those that reflect the least light.
+  // Sample indices by reflected light, ascending.
   std::vector<int> by_light(samples.size());
   std::iota(by_light.begin(), by_light.end(), 0);
   std::ranges::stable_sort(by_light, std::less(), [&](int j) {

@@ -53,7 +53,7 @@ TEST(OwnShadow, EndsWhereTheHighlightComesBack) {
 TEST(OwnShadow, IsNotWhatMaterialsDo) {
   EXPECT_EQ(FindOwnShadow(Highlight(0, 1)).theta_d_deg, 0);
   EXPECT_EQ(FindOwnShadow(Highlight(12, 3.5)).theta_d_deg, 0);  // not dark enough
-  EXPECT_EQ(FindOwnShadow(Highlight(3, 25)).theta_d_deg, 5);    // as far as one is looked for
+  EXPECT_EQ(FindOwnShadow(Highlight(3, 25)).theta_d_deg, 5);    // the largest that is looked for
   EXPECT_EQ(FindOwnShadow(Highlight(2, 25)).theta_d_deg, 0);    // not the half of it
   EXPECT_EQ(FindOwnShadow({}).theta_d_deg, 0);
   BrdfSamples few = Highlight(12, 25);
@@ -69,7 +69,7 @@ TEST(OwnShadow, IsNotWhatMaterialsDo) {
   }
 }
 
-// With so many of the samples for which `is_limited` holds, and all others.
+// At most `most` of the samples for which `is_limited` holds, and all others.
 BrdfSamples WithFew(const BrdfSamples& samples, int most,
                     const std::function<bool(double theta_d_deg)>& is_limited) {
   BrdfSamples few;
@@ -196,7 +196,7 @@ TEST(OwnShadow, IsLeftOutAndTold) {
                                          HasSubstr(std::to_string(in_shadow) + " samples below 8"),
                                          HasSubstr("--min_theta_d=0"))));
 
-  // Within a limit that leaves no light to hold it against, too.
+  // The shadow is also found within a limit that leaves no light to compare with.
   const Measurement near = LoadMeasurement(path, {.max_angle_deg = 20});
   EXPECT_EQ(near.counts.below_min_theta_d, in_shadow);
   EXPECT_THAT(near.notes, testing::SizeIs(1));

@@ -89,7 +89,7 @@ TEST(SampleSymptoms, AHighlightTowardsTheLightIsTold) {
 TEST(SampleSymptoms, MoreLightThanFellIsTold) {
   for (const ReflectedAtLeast& one :
        ReflectedLightOf(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.2; }).samples)) {
-    // As far as 80 degrees, and half a step of 5.
+    // The samples reach 80 degrees, plus half a step of 5.
     EXPECT_GT(one.albedo, 0.2 * kPi * 0.95);
     EXPECT_LT(one.albedo, 0.2 * kPi * 1.001);
   }
@@ -245,7 +245,7 @@ TEST(UnmeasuredSamples, ZerosAboutTheLightAreGapsWhereEachSampleHasItsOwn) {
   const Measurement shadow = scattered(12);
   EXPECT_GT(lost, 20);
   EXPECT_EQ(FindZeroGaps(shadow.samples).size(), lost);
-  // Too far from the light for a detector.
+  // These zeros reach too far from the light for the shadow of a detector.
   EXPECT_THAT(FindZeroGaps(scattered(35).samples), IsEmpty());
 }
 

@@ -39,8 +39,8 @@ TEST(FoldedSamples, FoldsExchangedDirectionsAndDuplicates) {
               1e-12 * folded.MeasuredEnergy());
 }
 
-// What differs by more than rounding stays apart, and E is the sum over all samples for any weights
-// and values, 0 among them.
+// Samples that differ by more than rounding stay apart, and E is the sum over all samples for any
+// weights and values, 0 among them.
 TEST(FoldedSamples, KeepsWhatReadsOtherwiseApart) {
   BrdfSamples samples = Scattered(ValidSamples(RandomTable(kGrid, 3, 0)));
   const int size = samples.size();
@@ -83,7 +83,7 @@ TEST(FoldedSamples, ConstantIsWhatPairsDisagreeBy) {
   EXPECT_NEAR(objective.folded_samples()->constant, expected, 1e-12 * expected);
 }
 
-// By both cells of G, in stretches that cover all samples.
+// Samples are sorted by both cells of G, in ranges that cover them all.
 TEST(FoldedSamples, AreSortedByTheirCells) {
   const Objective objective = ScatteredObjective(Scattered(ValidSamples(RandomTable(kGrid, 7))));
   const FoldedSamples& folded = *objective.folded_samples();

@@ -289,7 +289,7 @@ std::string ErrorOf(BrdfSamples samples, const ModelSpec& spec) {
   return "";
 }
 
-// As a model of few scattered samples has them, held against a table.
+// Models of few scattered samples have such tables, and are compared with a table.
 TEST(Objective, ReadsTablesOfOtherBinsBetweenThem) {
   const BrdfSamples samples = ValidSamples(RandomTable(kOdd, 14));
   ModelSpec spec = ModelSpec::SharedFactors(2, kOdd);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNoise = 0.05;
 
-// Of a diffuser, `copies` of each direction with noise of their own; every other one with light and
-// eye exchanged.
+// Samples of a diffuser: `copies` of each direction with independent noise, light and eye exchanged
+// in every other one.
 BrdfSamples Repeated(int copies, double noise) {
   constexpr int kDirections = 1500;
   Random random(1);

@@ -196,7 +196,7 @@ TEST(SampleResidual, DerivativesAreThoseOfItsValues) {
   }
 }
 
-// With numbers, and with the numbers of ceres::DynamicAutoDiffCostFunction.
+// Evaluates with numbers, and with the Jets of ceres::DynamicAutoDiffCostFunction.
 TEST(SampleResidual, AllocatesNothingInAnEvaluation) {
   using Jet = ceres::Jet<double, 8>;
   for (const auto& [name, spec] : TestSpecs(kGrid)) {

@@ -24,13 +24,13 @@ const std::vector<double> kCosines = {1, 0.999, 0.5, 0.1, 0.01, 1e-6, 1e-17};
 constexpr double kCosO = 0.7;
 constexpr long double kSolidAngle = 3;
 
-// Of the channel that is asked for, of all three, and of cos theta_i.
+// Weight as a function of rho in its channel, rho in all three, and cos theta_i.
 using Exact = long double;
 using Formula = Exact (*)(Exact rho, const std::array<Exact, 3>& all, Exact cos_i);
 
 // The table of docs/objective.md, as it stands there.
 const std::map<std::string, Formula> kFormulas = {
-    {"appearance",  // where no measurement is known, whose level then counts as 1
+    {"appearance",  // level 1, since no measurement is known
      [](Exact, const std::array<Exact, 3>& all, Exact cos_i) {
        const Exact c = cos_i * kCosO;
        const Exact root = std::sqrt(c * (all[0] + all[1] + all[2]) / 3 + 0.05L);
@@ -93,7 +93,7 @@ std::string ErrorOf(const std::string& name) {
   return "";
 }
 
-// Of each weighting, at samples of all kinds: visit(weighting, rho, cos_i, weights).
+// Calls visit(weighting, rho, cos_i, weights) for each weighting, at samples of all kinds.
 template <typename Visit>
 void ForEachWeight(const Visit& visit) {
   const size_t n = kValues.size();
@@ -146,7 +146,7 @@ TEST(Weighting, NeverRisesWithTheMeasuredValue) {
       for (double rho = 1e-12; rho < 1e12; rho *= 1.1) {
         ASSERT_LE(Weight(weighting, rho * 1.1, cos_i), Weight(weighting, rho, cos_i) * (1 + 1e-14))
             << weighting.name << " at " << rho;
-        // Nor with that of one channel.
+        // Weights do not rise with rho of one channel either.
         const Rgb less = weighting({.rho = {0.2, rho, 0.1}, .cosines = {cos_i, 1}});
         const Rgb more = weighting({.rho = {0.2, rho * 1.1, 0.1}, .cosines = {cos_i, 1}});
         for (int c = 0; c < kChannels; ++c) {
@@ -315,7 +315,8 @@ TEST(MeanReflectance, IsTheLambertianOfTheSameLight) {
   }
   EXPECT_NEAR(MeanReflectance(ValidSamples(table)), 0.2, 1e-14);
   EXPECT_EQ(MeanReflectance(Scaled(ValidSamples(table), 0)), 0);
-  // By its definition, where it is not constant; of many samples, none left out.
+  // Compares with the definition for a table that is not constant; of many samples, none is left
+  // out.
   constexpr MerlGrid kMany = {.theta_h = 50, .theta_d = 50, .phi_d = 80};
   const BrdfSamples samples = ValidSamples(RandomTable(kMany, 2));
   ASSERT_GT(samples.size(), 100000);
@@ -348,12 +349,12 @@ TEST(PowerWeighting, EpsilonMayBeAMultipleOfTheLevel) {
     EXPECT_TRUE(std::isfinite(Weight(black, 0, 1)));
     EXPECT_GT(Weight(black, 0, 1), 0);
   }
-  // Nor does a weighting that needs no level get one.
+  // A weighting that needs no level gets none.
   EXPECT_EQ(ForSamples(FindWeighting("log_relative"), samples).level, 0);
   EXPECT_TRUE(FindWeighting("power:relative=1,exponent=0.5").scale_free);
 }
 
-// To the last bit, since all that a power of two changes is exponents.
+// Equal to the last bit, since a power of two changes exponents only.
 TEST(PowerWeighting, ScaleFreeMeansTheSameWeightsInAnyUnit) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const BrdfSamples samples = ValidSamples(RandomTable(kGrid, 4));

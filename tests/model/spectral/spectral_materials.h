@@ -45,7 +45,7 @@ inline SpectralModel AnalyticSpectralModel(const ModelSpec& spec, std::vector<do
   return spectral;
 }
 
-// What a spectrometer would read of it at `count` pairs of directions, off by log-normal noise.
+// Readings of a spectrometer at `count` pairs of directions, off by log-normal noise.
 inline Measurement MeasureSpectra(const SpectralModel& model, int count, double noise = 0) {
   const SpectralColor color = SpectralColor::OfBands(model.wavelengths(), "the material");
   SampleCollector collector("the material", "spectra");

@@ -71,7 +71,7 @@ TEST_P(AnisotropicMaterialTest, IsReciprocalAndFinite) {
   EXPECT_TRUE(changes);
 }
 
-// By the midpoint rule over wo in steps of 1 and 2 degrees.
+// Integrates by the midpoint rule over wo in steps of 1 and 2 degrees.
 TEST_P(AnisotropicMaterialTest, ReflectsNoMoreLightThanItGets) {
   constexpr int kThetas = 90, kPhis = 180;
   for (const double theta_i : {0.0, 60.0, 88.0}) {
@@ -278,7 +278,7 @@ TEST(LeaveOutAtRandomTest, LeavesOutAShareBySeed) {
   EXPECT_NEAR(part.counts.missing / n, 0.3, 5 * std::sqrt(0.3 * 0.7 / n));
   EXPECT_EQ(part.counts.missing + part.counts.valid, all.counts.total);
   EXPECT_EQ(part.samples.size(), part.counts.valid);
-  // Those that are left are what they were.
+  // The remaining samples are unchanged.
   for (int j = 0, k = 0; j < part.samples.size(); ++j, ++k) {
     while (k < all.samples.size() && all.samples.rho[k] != part.samples.rho[j]) ++k;
     ASSERT_LT(k, all.samples.size());

@@ -79,8 +79,8 @@ TEST(TermModel, PairsAreWhatTheirFormulasSay) {
   }
 }
 
-// From no correlation, where both look along one azimuth, to none of azimuths, where these differ
-// by half a turn: l = 4.41 pi / (4.41 pi + 1).
+// `correlation` is 0 where both directions have one azimuth, and l = 4.41 pi / (4.41 pi + 1) where
+// these are half a turn apart.
 TEST(TermModel, CorrelationGoesByTheAzimuthBetween) {
   const TermReader reader(TermSpec::Of(ModelSpec::SharedFactors(1)));
   const auto at = [&](double phi) {

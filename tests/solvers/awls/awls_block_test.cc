@@ -110,8 +110,8 @@ TEST(CellBlocks, KeepTheSums) {
   }
 }
 
-// Where no element can move, no block can: with bounds on single parameters only, a minimum along
-// each is one of the convex whole.
+// No block moves where no element can: with bounds on single parameters only, a minimum along each
+// one is a minimum of the convex whole.
 TEST(CellBlocks, StayAtAFixedPointOfElements) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);

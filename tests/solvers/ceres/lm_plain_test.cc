@@ -107,8 +107,8 @@ TEST(LmPlain, IsTheProblemOfAllSamples) {
   }
 }
 
-// By any exact linear solver the steps are the same. Iterative ones end their steps early, and come
-// as low.
+// All exact linear solvers give the same steps. Iterative ones end their steps early, and come as
+// low.
 TEST(LmPlain, ComesToTheSameEByAnyLinearSolver) {
   FactorModel start;
   const Objective objective = NoisyObjective(kGrid, 2, &start);
@@ -130,7 +130,7 @@ TEST(LmPlain, ComesToTheSameEByAnyLinearSolver) {
   }
 }
 
-// Where samples lie between rows of D, only some of these can be eliminated.
+// For samples between rows of D, only some of these can be eliminated.
 TEST(LmPlain, EliminatesBetweenBins) {
   const Objective objective = BetweenBins(ModelSpec::SharedFactors(2, kGrid));
   const FactorModel start = RandomModel(objective.spec(), 2);

@@ -143,7 +143,7 @@ TEST(Lm, CondensesAllSamples) {
   QuadraticModel all;
   EvaluateReference(objective, start, Hessian::kGaussNewton, &all);
   EXPECT_NEAR(unit * unit * Dot(r, r), all.objective, 1e-12 * all.objective);
-  std::vector<std::vector<double>> columns(n);  // of J^, in the model's own units
+  std::vector<std::vector<double>> columns(n);  // J^ by columns, in the model's own units
   for (size_t k = 0; k < n; ++k) {
     const size_t num_in_units = kChannels * (1 + start.spec().lobes);
     const double scale = unit / (k < num_in_units ? cost.parameters().value_unit() : 1);
@@ -170,8 +170,7 @@ TEST(Lm, CondensesAllSamples) {
   EXPECT_NEAR(unit * unit * Dot(r_moved, r_moved), E, 1e-12 * E);
 }
 
-// What is promised of lm: it goes where Ceres would go with a residual block for each sample, but
-// for rounding errors.
+// lm takes the same steps, but for rounding errors, as Ceres with a residual block for each sample.
 void ExpectSameWay(const Objective& objective, const FactorModel& start,
                    const SolverOptions& options, const std::string& what) {
   constexpr double kTolerance = 1e-6;
@@ -185,7 +184,7 @@ void ExpectSameWay(const Objective& objective, const FactorModel& start,
     const double E = plain[k].record.objective;
     EXPECT_NEAR(condensed[k].record.objective, E, kTolerance * E);
     EXPECT_EQ(condensed[k].record.accepted, plain[k].record.accepted);
-    // What the solver remembers of E is E.
+    // The E that the solver caches is exact.
     EXPECT_EQ(condensed[k].record.objective, objective.Value(condensed[k].model));
   }
 }

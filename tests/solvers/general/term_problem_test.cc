@@ -48,7 +48,7 @@ TEST(TermProblem, OfThePapersFormIsTheObjective) {
   }
 }
 
-// Of all forms, by differences of E.
+// Checks the gradients of all forms by differences of E.
 TEST(TermProblem, GradientIsThatOfE) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
@@ -78,7 +78,7 @@ TEST(TermProblem, GradientIsThatOfE) {
 TEST(FitTerms, FindsMaterialsOfEachForm) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   for (const TermForm& form : TermForms()) {
-    if (form.name == "own_f") continue;  // of two lobes
+    if (form.name == "own_f") continue;  // needs two lobes
     SCOPED_TRACE(form.name);
     TermModel truth = form.from(TermModel::Of(AnalyticModel(spec, 0.2, 0.3)));
     const TermModel start = truth;

@@ -41,12 +41,12 @@ void ForEachExactCase(const Visit& visit) {
   }
 }
 
-// So near to an exact fit that rounding is felt.
+// Decades of decrease at which a fit is exact to rounding.
 constexpr double kFloorDecades = 27;
 
-// Where nothing damps them, Gauss-Newton steps square the error: with E in units of the black
-// model's, E' <= C^2 E^2, C a number of the problem. That C^2 is below 10 here, so that 5 decades
-// and more become 2 * 5 - 1, 9/5 of them, at least.
+// Undamped Gauss-Newton steps square the error: E' <= C^2 E^2, with E in units of the black model's
+// and C a number of the problem. That C^2 is below 10 here, so that 5 decades and more become at
+// least 9/5 of them, 2 * 5 - 1.
 void ExpectQuadratic(double decades, double next_decades, const std::string& what) {
   EXPECT_GE(next_decades, std::min(1.8 * decades, kFloorDecades)) << what << ", at " << decades;
 }

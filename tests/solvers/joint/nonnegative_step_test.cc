@@ -32,8 +32,7 @@ struct Case {
   }
 };
 
-// With these seeds, that is: rounds are few. Of 300 parameters 25 may change sides under one
-// factor.
+// These seeds need few rounds. Of 300 parameters 25 may change sides under one factor.
 TEST(NonnegativeStep, EndsWhereNothingWantsToMove) {
   constexpr double kLambda = 0.3;
   for (uint64_t seed = 1; seed <= 7; ++seed) {

@@ -1,4 +1,4 @@
-// Which starts have ended in the same minimum, and what that says of others.
+// Groups of starts that have ended in the same minimum, and conclusions on further minima.
 #include "solvers/multistart/minima.h"
 
 #include <gmock/gmock.h>

@@ -23,7 +23,7 @@ namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
 
-// As many iterations at least has `auto` gone on with all its starts, and then with the best.
+// Iterations after which `auto` has gone on with all its starts, and then with the best.
 constexpr int kWholeRace = 14;
 
 // Three lobes of a GGX-like width each, with noise: data with more than one minimum.
@@ -51,7 +51,7 @@ class Multistart : public testing::TestWithParam<const char*> {
   }
 };
 
-// Else a run of a thousand starts says nothing for a minute.
+// Without progress, a run of a thousand starts would say nothing for a minute.
 TEST_P(Multistart, TellsHowFarTheStartsAre) {
   const Objective objective = NoisyObjective(ModelSpec::SharedFactors(3, kGrid), 2);
   FactorModel model = FindInitialModel("constant").make(objective, 1);
@@ -106,7 +106,7 @@ TEST_P(Multistart, NamesTheStartsBestFirst) {
   EXPECT_THAT(Names(summary), testing::UnorderedElementsAreArray(expected));
   EXPECT_TRUE(std::ranges::is_sorted(summary.starts, {}, &StartResult::objective));
   EXPECT_LT(summary.starts.front().objective, summary.starts.back().objective);
-  // So few samples are not thinned: E is that of all.
+  // These few samples are not thinned: E is that of all.
   double least = summary.initial_objective;
   for (const IterationRecord& record : summary.trace) least = std::min(least, record.objective);
   EXPECT_LE(least, summary.starts.front().objective * (1 + 1e-12));
@@ -154,7 +154,7 @@ TEST_P(Multistart, IsNeverWorseThanAnyStart) {
     const double E = objective.Value(model);
     EXPECT_EQ(E, summary.final_objective) << name;
     EXPECT_LE(E, summary.initial_objective) << name;
-    // Of samples that are thinned, E of a start is estimated.
+    // On thinned samples, E of a start is an estimate.
     const int stride = StartElimination::StrideFor(objective, StartElimination::kThinned);
     const double most = 1 + (stride > 1 ? 0.05 : 1e-12);
     for (const StartResult& start : summary.starts) {
@@ -236,8 +236,9 @@ TEST_P(Multistart, LeavesUnobservedBinsToTheCaller) {
   }
 }
 
-// With so many samples that thinning leaves most of them out; a few of these hold most of E, so
-// that it has to look at more.
+// Thinning leaves most of these samples out; a few of them hold most of E, so that it has to look
+// at
+// more.
 TEST_P(Multistart, FitsWhatItRacedWithoutAsWell) {
   constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 8, .phi_d = 96};
   const ModelSpec spec = ModelSpec::SharedFactors(1, kFine);
@@ -389,7 +390,7 @@ TEST(MultistartOnly, EndsWhereRandomStartsAgree) {
   SolverOptions options = Iterations(100);
   options.starts = 100;
   const SolverSummary summary = MakeSolver("multistart")->Solve(objective, options, &model);
-  EXPECT_EQ(summary.starts.size(), 16U);  // of which eight are random
+  EXPECT_EQ(summary.starts.size(), 16U);  // eight of them are random
   EXPECT_TRUE((Minima{.starts = summary.starts}.Enough()));
   EXPECT_THAT(Names(summary), testing::Contains(testing::StartsWith("dogleg/")));
 }

@@ -73,7 +73,7 @@ TEST(StartElimination, ThinsNoMoreThanAskedFor) {
   EXPECT_EQ(elimination.thinned().samples().size(), all);
 }
 
-// Until all are there; those that are in go on where they are, on the others' terms.
+// Thinning is lessened until all samples are there; starts go on from where they are, with new E.
 TEST(StartElimination, ThinsLess) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kFine);
   const Objective objective = MakeObjective(RandomTable(kFine, 1), spec);

@@ -80,7 +80,7 @@ TEST(SoftenCoarseStarts, RanksStartsAndPutsThoseThatAreAlikeLast) {
   }
 }
 
-// What the coarse samples find is worth a few steps on finer ones.
+// A model of the coarse samples is worth a few steps on finer ones.
 TEST(SoftenFurther, GoesOnFromTheCoarseModel) {
   const Objective objective = Copper(ModelSpec::SharedFactors(2, kGrid));
   PhaseSeconds phases;

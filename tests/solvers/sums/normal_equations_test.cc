@@ -99,7 +99,7 @@ TEST(NormalEquations, OfScatteredSamplesEqualReference) {
   }
 }
 
-// As many readings of D as there may be, in two vectors of lobes; and with a D for each channel.
+// The greatest number of readings of D, in two vectors of lobes; and a D for each channel.
 TEST(NormalEquations, OfLobesThatAreAllStretchedDifferently) {
   for (const bool per_channel : {false, true}) {
     ModelSpec spec = ModelSpec::SharedFactors(per_channel ? 3 : kMaxLobes, kGrid);
