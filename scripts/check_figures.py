@@ -63,7 +63,8 @@ UNFINISHED = ("awls_equality", "random_starts", "stiff")
 # Further sources that these experiments depend on.
 ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
-        "robustness": ["src/model/measurement", "src/model/corruption"], "scene": ["src/fit/scene"], "reads": ["src/fit/scene"]}
+        "robustness": ["src/model/measurement", "src/model/corruption"], "scene": ["src/fit/scene"],
+        "reads": ["src/fit/scene"]}
 FUNCTIONS: dict[str, Callable[..., object]] = {
     "median": stats.median, "quantile": stats.quantile, "mean": np.mean, "max": np.nanmax, "min": np.nanmin,
     "geometric_mean": lambda values: np.exp(np.mean(np.log(values))), "share": np.mean, "count": np.sum, "sum": np.sum,
