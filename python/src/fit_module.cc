@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/files/own_mark.h"
 #include "io/formats/source_option.h"
 #include "trilobe/io/formats/source.h"
 
@@ -109,6 +110,9 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
       nullptr);
   m.def("source_options", SourceOptionDefaults,
         nb::sig("def source_options() -> dict[str, object]"));
+  m.def("says_own", [](const nb::bytes& content) {
+    return SaysOwn({static_cast<const char*>(content.data()), content.size()});
+  });
   BindMeasurement(&m);
   BindFit(&m);
   BindObjective(&m);

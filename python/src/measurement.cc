@@ -75,11 +75,11 @@ Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
   }
   Measurement measurement = azimuths == "auto" ? collector.TakeByAzimuths() : collector.Take();
   if (azimuths != "auto") {
-    measurement.anisotropic = azimuths == "yes";
+    measurement.anisotropic = measurement.azimuths_matter = azimuths == "yes";
   } else if (measurement.anisotropic) {
     measurement.notes.emplace_back(
-        "light comes from several azimuths: the material is taken for anisotropic; "
-        "anisotropic=False says that azimuths do not matter, and is sooner fitted");
+        "light comes from several azimuths: a fit finds out whether the material depends on them; "
+        "anisotropic=True or anisotropic=False says so, and is sooner fitted");
   }
   if (source_options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
   DecideMeasured(source_options, &measurement);

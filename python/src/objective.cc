@@ -20,6 +20,8 @@
 #include <vector>
 
 #include "core/algebra/openblas.h"
+#include "fit/azimuths.h"
+#include "fit/choose_azimuths.h"
 #include "fit_module.h"
 #include "model/lobes/gauge.h"
 #include "model/objective/canonical_form.h"
@@ -105,8 +107,12 @@ class FitObjective {
     const Weighting& weighting =
         FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
     const int threads = ThreadsOf(options);
-    const std::shared_ptr<const Measurement> data = measured.data;
+    std::shared_ptr<const Measurement> data = measured.data;
     const nb::gil_scoped_release released;
+    if (const FitOptions fit = {.form = form, .weighting = weighting, .num_threads = threads};
+        !like && ChoosesAzimuths(*data, fit)) {
+      data = std::make_shared<const Measurement>(WithAzimuthsChosen(*data, fit));
+    }
     BrdfSamples samples = SamplesOf(*data);
     if (weights) samples = Weighted(std::move(samples), ByRow(*weights));
     const ModelSpec spec = like ? *like : SpecFor(*data, form, samples.size());

@@ -127,6 +127,7 @@ class _Fit:
         share = _share(shard, len(tiles))
         there = About.load(folder)
         if there is None:
+            about.check_free(folder)
             make_folder(folder)
             about.save(folder)
         elif there != about:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import Brdf, make_folder, text_of_path, write_text
+from trilobe._brdf import Brdf, make_folder, printable, text_of_path, write_text
 from trilobe._core import Error
-from trilobe._measurement import Measurement, measurement_of
+from trilobe._measurement import Measurement, fits, measurement_of
 
 if TYPE_CHECKING:
     from trilobe._uncertainty import Uncertainty
@@ -167,12 +167,18 @@ class Result:
         problem = self._problem and self._problem._replace(measurement=None)
         return {**self.__dict__, "_problem": problem}
 
-    def save(self, folder: str | os.PathLike[str]) -> None:
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes model.json, trace.csv and report.json into a folder, which is made if need be.
 
         Another model that is there stays as model.previous.json, as `trilobe fit` has it.
+
+        Raises:
+            Error: if they cannot be written or, without ``force``, one of them exists that Trilobe has not written.
         """
         name = Path(text_of_path(folder))
+        if not force:
+            for file in self._texts:
+                _check_own(name / file)
         make_folder(name)
         _keep_earlier(name / "model.json", self._texts["model.json"])
         for file, text in self._texts.items():
@@ -181,6 +187,19 @@ class Result:
     def __repr__(self) -> str:
         """The verdict."""
         return f"<trilobe.Result: {self.verdict}>"
+
+
+def _check_own(path: Path) -> None:
+    """Raises Error if there is a file that Trilobe has not written."""
+    try:
+        content = path.read_bytes() if path.exists() else b""
+    except OSError as error:
+        raise Error(f"cannot read {printable(path)}: {error.strerror}") from None
+    if content and not fits().says_own(content):
+        raise Error(
+            f"{printable(path)} exists, and Trilobe has not written it; move it away, give another folder, or "
+            "overwrite it by force=True"
+        )
 
 
 def _keep_earlier(path: Path, text: str) -> None:

@@ -72,13 +72,18 @@ class Texels:
             f += strength * lobes_of(material, wi, wo)
         return f.astype(wi.dtype, copy=False)
 
-    def save(self, folder: str | os.PathLike[str]) -> None:
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes d.exr, error.exr, s0.exr and so on, materials/0.json and so on, and texels.json into a folder.
 
         The folder is made if need be. Strengths that are equal in all channels are pictures of one channel.
+
+        Raises:
+            Error: if it cannot be written or, without ``force``, a folder that is none of texels has such a file.
         """
         coloured = any(bool((s[..., :1] != s).any()) for s in self.s)
         name = Path(text_of_path(folder))
+        if not force and About.load(name) is None:
+            About(self.shape, len(self.materials), coloured).check_free(name)
         make_folder(name / "materials")
         for k, material in enumerate(self.materials):
             write_text(name / "materials" / f"{k}.json", material.to_json())
@@ -145,6 +150,16 @@ class About(NamedTuple):
         """Texels from pictures in any shape."""
         d, error, *s = (values.reshape(*self.shape, values.shape[-1]) for values in pictures)
         return Texels(materials, d, [np.broadcast_to(values, (*self.shape, 3)) for values in s], error[..., 0])
+
+    def check_free(self, folder: Path) -> None:
+        """Raises Error if the folder has files of the names that are to be written."""
+        materials = [f"materials/{k}.json" for k in range(self.materials)]
+        for name in (*(f"{stem}.exr" for stem, _ in self.pictures()), *materials):
+            if (folder / name).exists():
+                raise Error(
+                    f"{printable(folder / name)} exists, and Trilobe has not written it; move it away, or give "
+                    "another folder"
+                )
 
     def finished(self, folder: Path) -> bool:
         """Whether the pictures are there."""

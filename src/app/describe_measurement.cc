@@ -197,8 +197,10 @@ Measurement OnGrid(const Measurement& measurement) {
 }
 
 Json ToJson(const Anisotropy& anisotropy) {
+  const bool smooth = anisotropy.with_neighbours > 0;
   return {{"samples", anisotropy.samples},
-          {"share", anisotropy.samples > 0 ? Json(anisotropy.share) : Json()}};
+          {"share", anisotropy.samples > 0 ? Json(anisotropy.share) : Json()},
+          {"share_beyond_noise", smooth ? Json(anisotropy.smooth_share) : Json()}};
 }
 
 Json ToJson(const std::vector<ReflectedAtLeast>& reflected) {
@@ -280,11 +282,16 @@ void DescribeScattered(const Measurement& measurement) {
   Print("reciprocity error", reciprocity);
   if (!reflected.empty()) PrintLine("reflects at least", ReflectedText(reflected));
   if (anisotropy) {
-    PrintLine("anisotropy", anisotropy->samples == 0
-                                ? "unknown: no sample was measured with the material turned"
-                                : Text(100 * anisotropy->share, 3) +
-                                      " % of the energy is not in the mean over all turns, " +
-                                      std::to_string(anisotropy->samples) + " samples");
+    std::string text = "unknown: no sample was measured with the material turned";
+    if (anisotropy->samples > 0) {
+      text = Text(100 * anisotropy->share, 3) +
+             " % of the energy is not in the mean over all turns, " +
+             std::to_string(anisotropy->samples) + " samples";
+    }
+    if (anisotropy->with_neighbours > 0) {
+      text += "; beyond noise " + Text(100 * std::max(0.0, anisotropy->smooth_share), 3) + " %";
+    }
+    PrintLine("anisotropy", text);
   }
   if (!picture.empty()) PrintLine("written", picture);
   for (const std::string& note : measurement.notes) PrintLine("note", note);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/system/process.h"
+#include "fit/azimuths.h"
 #include "fit/check_options.h"
 #include "fit/choose_form.h"
 #include "fit/finish/albedo_ripple.h"
@@ -79,6 +80,12 @@ FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
 bool HasEnded(StopReason reason) {
   return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
          reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
+}
+
+// The model, if nobody stopped the fit and it could choose the form that it was asked for.
+std::optional<FactorModel> ModelOf(FitResult fit) {
+  if (fit.interrupted || fit.finished.too_few_to_choose > 0) return std::nullopt;
+  return std::move(fit.file.model);
 }
 
 // One fit, step by step.
@@ -203,15 +210,10 @@ class Fitting {
     if (options_.compare) Compare(fit);
     fit->seconds.score = stopwatch_.Lap();
     if (options_.held_out && !options_.stop()) {
-      fit->held_out =
-          FitWithoutHeldOut(measurement_, options_, fit->model().spec(),
-                            [&](const FitOptions& options) -> std::optional<FactorModel> {
-                              FitResult part = Fitting(measurement_, options).Run();
-                              if (part.interrupted || part.finished.too_few_to_choose > 0) {
-                                return {};
-                              }
-                              return std::move(part.file.model);
-                            });
+      const ModelSpec& spec = fit->model().spec();
+      fit->held_out = FitWithoutHeldOut(measurement_, options_, spec, [&](const auto& part) {
+        return ModelOf(Fitting(measurement_, part).Run());
+      });
       fit->seconds.held_out = stopwatch_.Lap();
     }
     fit->interrupted = options_.stop();
@@ -428,7 +430,15 @@ class Fitting {
 }  // namespace
 
 FitResult Fit(const Measurement& measurement, const FitOptions& options) {
-  return Fitting(measurement, options).Run();
+  const auto fit = [](const auto& data, const auto& by) { return Fitting(data, by).Run(); };
+  if (!ChoosesAzimuths(measurement, options)) return fit(measurement, options);
+  AzimuthChoice choice =
+      ChooseAzimuths(measurement, CheckOptions(options),
+                     [&fit](const auto& data, const auto& by) { return ModelOf(fit(data, by)); });
+  FitResult result =
+      choice.matter ? fit(measurement, options) : fit(WithoutAzimuths(measurement), options);
+  result.azimuths = std::move(choice);
+  return result;
 }
 
 FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,

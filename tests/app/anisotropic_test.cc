@@ -140,7 +140,7 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
 }
 
 TEST_F(AnisotropicCommands, FitWritesItsCourseAndTheTablesThatItFitted) {
-  const ProgramResult fit = RunProgram({"fit", "synth:linen@4x12", "--lobes=1", "--convergence",
+  const ProgramResult fit = RunProgram({"fit", "synth:charmeuse@4x12", "--lobes=1", "--convergence",
                                         "--max_iterations=3", "--out=" + In("convergence")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(Contents(In("convergence/convergence.csv")),
@@ -190,7 +190,7 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
       RunProgram({"fit", "--scene=" + In("scene.json"), quick, cache, "--out=" + In("scene")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("kept:     isotropic instead of anisotropic"));
-  EXPECT_THAT(fit.out, HasSubstr("left out: isotropic instead of anisotropic"));
+  EXPECT_THAT(fit.out, HasSubstr("note:     isotropic: turned about its normal"));
   const json plan = Parse(Contents(In("scene/plan.json")));
   for (const json& material : plan["materials"]) {
     EXPECT_LT(material["parameters"]["pruned"], material["parameters"]["full"]);
@@ -240,7 +240,7 @@ TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
 // The report says what was tried; the model is of the form that looks best, within the budget.
 TEST_F(AnisotropicCommands, FitChoosesTheFormThatLooksBest) {
   const ProgramResult fit =
-      RunProgram({"fit", "synth:linen@4x12", "--model=auto", "--lobes=1", "--max_parameters=300",
+      RunProgram({"fit", "synth:velvet@4x12", "--model=auto", "--lobes=1", "--max_parameters=300",
                   "--solver=awls", "--max_iterations=2", "--nodiagnose", "--convergence",
                   "--verbose", "--noplots", "--out=" + In("form")});
   ASSERT_EQ(fit.status, 0) << fit.err;

@@ -118,8 +118,8 @@ TEST_F(Scattered, AFormIsChosenByHeldOutSamples) {
 
 TEST_F(Scattered, AnisotropicFormsAreChosenByHeldOutSamples) {
   const std::string csv = folder_ / "cloth.csv";
-  ASSERT_EQ(RunProgram({"convert", "synth:linen@6x24", "--missing=0.75", "--out=" + csv}).status,
-            0);
+  ASSERT_EQ(
+      RunProgram({"convert", "synth:charmeuse@6x24", "--missing=0.75", "--out=" + csv}).status, 0);
   const std::vector<std::string> quick = {"fit",
                                           csv,
                                           "--model=auto",

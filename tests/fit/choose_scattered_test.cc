@@ -137,6 +137,7 @@ TEST(FitOfScattered, ChoosesAmongAnisotropicForms) {
   Measurement measured = LoadMeasurement("synth:linen@6x24");
   LeaveOutAtRandom(0.75, 1, &measured);
   ASSERT_TRUE(measured.anisotropic);
+  measured.azimuths_matter = true;
   ASSERT_FALSE(GridOf(measured));
   FitOptions options = Auto(350);
   options.solver = "awls";

@@ -364,3 +364,15 @@ def test_save_keeps_another_model(tmp_path):
     results[1].save(tmp_path)
     assert trilobe.load(tmp_path / "model.json").lobes == 2
     assert trilobe.load(tmp_path / "model.previous.json").lobes == 1
+
+
+@pytest.mark.parametrize("name", ["model.json", "trace.csv", "report.json"])
+def test_save_leaves_files_of_others(fitted, tmp_path, name):
+    (tmp_path / name).write_text('{"tool": "another"}')
+    with pytest.raises(trilobe.Error, match=f"{name}' exists, and Trilobe has not written it"):
+        fitted.save(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == '{"tool": "another"}'
+    fitted.save(tmp_path, force=True)
+    fitted.save(tmp_path)
+    assert trilobe.load(tmp_path / "model.json").lobes == 3

@@ -329,6 +329,22 @@ def test_says_what_is_wrong(pair, change, told, tmp_path, monkeypatch):
     assert told in str(error.value) and "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("name", ["d.exr", "s1.exr", "materials/1.json"])
+def test_files_of_others_stay(pair, tmp_path, name):
+    _, _, rho = surface(pair)
+    texels = trilobe.fit_texels(pair, rho, materials(), **QUIET)
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(trilobe.Error, match=f"{name}' exists, and Trilobe has not written it"):
+        texels.save(tmp_path)
+    with pytest.raises(trilobe.Error, match=f"{name}' exists, and Trilobe has not written it"):
+        trilobe.fit_texels(pair, rho, materials(), out=tmp_path, **QUIET)
+    assert (tmp_path / name).read_text() == "mine"
+    texels.save(tmp_path, force=True)
+    texels.save(tmp_path)
+    assert np.array_equal(trilobe.load_texels(tmp_path).d, texels.d)
+
+
 @pytest.mark.parametrize("shape", [(0, 7), (7, 0), (0,)])
 def test_no_texel_is_none(pair, tmp_path, shape):
     texels = trilobe.fit_texels(pair, np.empty((*shape, 64, 3)), materials(), **QUIET)

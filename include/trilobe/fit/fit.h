@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "trilobe/fit/azimuth_choice.h"
 #include "trilobe/fit/bands/fit_bands.h"
 #include "trilobe/fit/finish_fit.h"
 #include "trilobe/fit/fit_options.h"
@@ -38,7 +39,8 @@ struct FitResult {
   // run.
   ModelFile file = {};
   SolverSummary summary = {};
-  std::optional<NodeChoice> nodes = {};  // with FormOptions::nodes_by_held_out
+  std::optional<AzimuthChoice> azimuths = {};  // for samples whose azimuths are given
+  std::optional<NodeChoice> nodes = {};        // with FormOptions::nodes_by_held_out
   // Samples of the prior that joined the data, and the weight of each.
   struct Prior {
     double weight = 0;

@@ -205,6 +205,9 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
       {"stored_parameters", report.stored_parameters},
       {"candidates", ToJson(report.finished.candidates)},
       {"candidates_held_out", report.finished.held_out},
+      {"azimuths", report.azimuths
+                       ? Json{{"matter", report.azimuths->matter}, {"why", report.azimuths->why}}
+                       : Json()},
       {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
       {"prior", report.prior
                     ? Json{{"weight", report.prior->weight},

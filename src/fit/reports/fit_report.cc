@@ -83,6 +83,7 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->interrupted = fit.interrupted;
   report->spec = fit.model().spec();
   report->summary = fit.summary;
+  report->azimuths = fit.azimuths;
   report->nodes = fit.nodes;
   report->prior = fit.prior;
   report->raw = fit.raw;
@@ -161,6 +162,10 @@ void PrintSummary(const FitReport& report) {
   if (!report.finished.steps.empty()) {
     PrintLine("finished     E is " + Text(100 * report.score.relative_objective, 3) + " %, after " +
               FinishedText(report));
+  }
+  if (report.azimuths) {
+    PrintLine(std::string("azimuths     ") +
+              (report.azimuths->matter ? "anisotropic: " : "isotropic: ") + report.azimuths->why);
   }
   if (report.finished.too_few_to_choose > 0) {
     PrintLine("note         no form was chosen, which takes " +

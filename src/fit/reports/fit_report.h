@@ -46,6 +46,7 @@ struct FitReport {
   std::vector<std::string> data_notes;  // Measurement::notes
   BinCounts bins;                       // of the source
   SolverSummary summary;
+  std::optional<AzimuthChoice> azimuths;
   std::optional<NodeChoice> nodes;
   using Prior = FitResult::Prior;
   std::optional<Prior> prior;

@@ -9,6 +9,7 @@
 
 #include "core/files/content.h"
 #include "core/system/process.h"
+#include "fit/choose_azimuths.h"
 #include "fit/finish/limit_light.h"
 #include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
@@ -149,7 +150,14 @@ class MaterialFitter {
     }
     SourceOptions options = WithOptionsOf(material_, settings_.source);
     options.num_threads = num_threads_;
-    return source_.Read(options);
+    // Fits and judges agree whether azimuths matter, by all samples.
+    Measurement measured = source_.Read(options);
+    const Weighting weighting = WeightingFor(measured);
+    return WithAzimuthsChosen(std::move(measured), {.form = {.lobes = settings_.lobes},
+                                                    .weighting = weighting,
+                                                    .seed = settings_.seed,
+                                                    .num_threads = num_threads_,
+                                                    .stop = settings_.stop});
   }
 
   const Measurement& measured() {

@@ -65,8 +65,12 @@ std::optional<BrdfTable> TableOfSamples(const Measurement& scattered) {
 }
 
 std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
-  if (!scattered.anisotropic) return std::nullopt;
   CheckDirections(scattered);
+  const std::vector<SphericalAngles>& directions = scattered.samples.directions;
+  const auto other_light = [&](const SphericalAngles& at) {
+    return at.phi_i != directions.front().phi_i;
+  };
+  if (std::ranges::none_of(directions, other_light)) return std::nullopt;
   std::vector<double> thetas = {0}, phis = {0};
   for (const SphericalAngles& at : scattered.samples.directions) {
     for (const double theta : {at.theta_i, at.theta_o}) thetas.push_back(theta);
@@ -77,7 +81,7 @@ std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
   const HemisphereGrid grid = {StepsOf(std::move(thetas), kPi / 2),
                                StepsOf(std::move(phis), 2 * kPi)};
   const int64_t nodes = int64_t{grid.thetas} * grid.phis;
-  if (nodes < 1 || nodes > kMostNodes) return std::nullopt;
+  if (nodes < 1 || nodes > kMostNodes || grid.phis < 3) return std::nullopt;
   // Pairs up to the last theta.
   const double rings = std::round(scattered.max_theta / grid.ThetaStep()) + 1;
   const double pairs = rings * grid.phis * rings * grid.phis;

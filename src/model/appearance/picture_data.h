@@ -17,8 +17,9 @@ namespace trilobe {
 // without dark samples, or azimuths matter.
 std::optional<BrdfTable> TableOfSamples(const Measurement& scattered);
 
-// The grid with the steps of anisotropic samples. Nothing unless they are at its nodes, at most one
-// per pair, and at half or more of the pairs up to the last theta.
+// The grid with the steps of samples whose azimuths are given, whether these matter or not. Nothing
+// unless they are at its nodes, at most one per pair, and at half or more of the pairs up to the
+// last theta.
 std::optional<HemisphereGrid> GridOf(const Measurement& scattered);
 
 // The data for images of a measurement: its table, or its values at grid nodes. Other scattered

@@ -36,8 +36,10 @@ struct Measurement {
   std::optional<BrdfTable> table = {};
   // Interpolates data that allow it, such as an RGL file.
   std::function<MeasuredValue(const DirectionPair&)> look_up = nullptr;
-  bool anisotropic = false;        // values depend on the azimuths, not only on their difference
-  BrdfFunction formula = nullptr;  // the exact BRDF of a synthetic material
+  // Azimuths of light and detector are given, not only their difference: values may depend on them.
+  bool anisotropic = false;
+  bool azimuths_matter = false;         // whoever made an anisotropic one says that they do
+  BrdfFunction formula = nullptr;       // the exact BRDF of a synthetic material
   std::vector<std::string> notes = {};  // sentences about suspicious data
 
   // For scattered data:
