@@ -4,7 +4,7 @@
 Files figures.txt in docs/ and in the folders of experiments bind figures that stand in paragraphs, lists, tables and
 blocks of code of pages, word for word:
 
-    which-flags.md: **Outliers** are
+    your-data.md: **Outliers** are
       trilobe fit synth:copper --out=a
         46.7 dB = PSNR
         0.12 % = a/report.json relative_objective
@@ -13,9 +13,9 @@ blocks of code of pages, word for word:
       ../experiments/lobes/results/runs.csv
         0.4 = max(psnr_db) - min(psnr_db)
 
-At the margin stand the page, relative to the file's folder, and how the paragraph begins: so much of it as no other line
-of the page begins with. An item of a list, or a row of a table, is found in the same way; it lasts until the next empty
-line. Below it stand sources, by two spaces, and below a source FIGURE = WHERE, by four. More spaces continue the line
+At the margin stand the page, relative to the file's folder, and how the paragraph begins: so much of it as no other
+line of the page begins with. An item of a list, or a row of a table, is found in the same way; it lasts until the next
+empty line. Below it stand sources, by two spaces, and below a source FIGURE = WHERE, by four. More spaces continue the line
 before; # begins a line for readers. The source is one of
 - a command, or `above` or `below`: the next block of commands of the page, with flags added to its `trilobe fit` if
   some follow. WHERE is a member of a JSON file that it leaves, or else a regular expression: the last match in what the

@@ -35,7 +35,7 @@ DEFINE_double(
     "to 1: how would a fit do with fewer?");
 DEFINE_string(corrupt, "",
               "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., as "
-              "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
+              "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/your-data.md)");
 DEFINE_string(
     cosine, "0",
     "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "

@@ -19,7 +19,7 @@ DEFINE_string(
     "shared: D and G shared by the channels, F by the lobes (Peng et al.), isotropic, or "
     "anisotropic where the measurement is; isotropic: though it is not; anisotropic: on the nodes "
     "of the paper and without a prior; independent: one lobe, nothing shared (Bagher et al.); "
-    "auto: what looks best within --max_parameters (docs/model-choice.md, docs/anisotropic.md)");
+    "auto: what looks best within --max_parameters (docs/forms.md)");
 DEFINE_string(
     d_nodes, "",
     "of an anisotropic model, nodes of D: so many theta_h by so many phi_h, theta_h at even "
@@ -42,12 +42,12 @@ DEFINE_string(
     nodes, "given",
     "of an anisotropic model: given (by --d_nodes and --g_nodes, or by default); held_out: those "
     "of D and G, from coarse to fine, with the least error on directions that are held out "
-    "(docs/anisotropic.md)");
+    "(docs/forms.md)");
 DEFINE_double(
     prior, 1,
     "of scattered samples: how much a small model, fitted first, counts between the measured "
-    "directions, much less where no azimuths matter (docs/anisotropic.md, "
-    "docs/few-samples.md); 0: not at all, the default with --model=anisotropic");
+    "directions, much less where no azimuths matter (docs/forms.md); "
+    "0: not at all, the default with --model=anisotropic");
 
 namespace trilobe {
 namespace {

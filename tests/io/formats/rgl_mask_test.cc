@@ -1,4 +1,4 @@
-// Which bins of an RGL file count as measured (docs/samples.md).
+// Which bins of an RGL file count as measured (docs/your-data.md).
 
 #include "io/formats/rgl_mask.h"
 

@@ -12,7 +12,7 @@ namespace trilobe {
 
 class Readings;
 
-// What an instrument may do to a measurement (docs/robustness.md).
+// What an instrument may do to a measurement (docs/your-data.md).
 struct CorruptionKind {
   std::string name;     // "noise"
   std::string unit;     // of the strength: "deg"
