@@ -15,8 +15,8 @@ blocks of code of pages, word for word:
 
 At the margin stand the page, relative to the file's folder, and how the paragraph begins: so much of it as no other
 line of the page begins with. An item of a list, or a row of a table, is found in the same way; it lasts until the next
-empty line. Below it stand sources, by two spaces, and below a source FIGURE = WHERE, by four. More spaces continue the line
-before; # begins a line for readers. The source is one of
+empty line. Below it stand sources, by two spaces, and below a source FIGURE = WHERE, by four. More spaces continue the
+line before; # begins a line for readers. The source is one of
 - a command, or `above` or `below`: the next block of commands of the page, with flags added to its `trilobe fit` if
   some follow. WHERE is a member of a JSON file that it leaves, or else a regular expression: the last match in what the
   command prints has the value as its group, or as the first number after it. A last digit may be off by one.
