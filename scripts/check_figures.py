@@ -1,23 +1,32 @@
 #!/usr/bin/python3
 """Checks that figures of the pages are what commands print and tables hold.
 
-A comment right before a paragraph, list, table or block of code binds figures that stand in it, word for word:
+Files figures.txt in docs/ and in the folders of experiments bind figures that stand in paragraphs, lists, tables and
+blocks of code of pages, word for word:
 
-    <!-- figures: trilobe fit synth:copper --out=a; 46.7 dB = PSNR; 0.12 % = a/report.json relative_objective -->
-    <!-- figures nightly: below --prior=0; 9.5 dB = PSNR -->
-    <!-- figures: ../experiments/lobes/results/runs.csv; 0.4 = max(psnr_db) - min(psnr_db) -->
+    your-data.md: **Outliers** are
+      trilobe fit synth:copper --out=a
+        46.7 dB = PSNR
+        0.12 % = a/report.json relative_objective
+      nightly: below --prior=0
+        9.5 dB = PSNR
+      ../experiments/lobes/results/runs.csv
+        0.4 = max(psnr_db) - min(psnr_db)
 
-First comes the source, then FIGURE = WHERE. The source is one of
+At the margin stand the page, relative to the file's folder, and how the paragraph begins: so much of it as no other
+line of the page begins with. An item of a list, or a row of a table, is found in the same way; it lasts until the next
+empty line. Below it stand sources, by two spaces, and below a source FIGURE = WHERE, by four. More spaces continue the
+line before; # begins a line for readers. The source is one of
 - a command, or `above` or `below`: the next block of commands of the page, with flags added to its `trilobe fit` if
   some follow. WHERE is a member of a JSON file that it leaves, or else a regular expression: the last match in what the
   command prints has the value as its group, or as the first number after it. A last digit may be off by one.
-- a table, CSV or Markdown, relative to the page. WHERE is an expression in Python of its columns, which are numpy
-  arrays, and of the FUNCTIONS below; the figure is its value, rounded.
+- a table, CSV or Markdown, relative to the file's folder. WHERE is an expression in Python of its columns, which are
+  numpy arrays, and of the FUNCTIONS below; the figure is its value, rounded.
 A figure in % is a share of 1, but as it is where a command prints it. `seven` is 7, `none` 0.
 
 Pages of tables that were not made by this version of the program say so at their top; --write puts or takes that line.
 Commits of experiments/same_fits.txt make no other version.
-"nightly" marks a command that takes long. Measured files that it names are looked for in the folder of --data; without
+"nightly:" marks a command that takes long. Measured files that it names are looked for in the folder of --data; without
 them its figures are not checked, and a line says so.
 """
 
@@ -41,13 +50,14 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "experiment
 from lab import stats  # noqa: E402
 from lab.manifest import load  # noqa: E402
 
-COMMENT = re.compile(r"<!-- figures( nightly)?: ((?:(?!-->).)*?)\s*-->\n", re.DOTALL)
+COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 CODE = re.compile(r"^```sh\n(.*?)^```$|(^    (?:trilobe|\./run) [^\n]*\n(?:    [^\n]*\n)*)", re.DOTALL | re.MULTILINE)
-BLOCK = re.compile(r"(?:<!--.*?-->\n)*(```.*?^```$|.*?(?=\n\n|\Z))", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"```.*?^```$|.*?(?=\n[ \t]*\n|\Z)", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 WORDS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
          "seventeen eighteen nineteen twenty").split()
 NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
+FILES = ["docs/figures.txt", "experiments/*/figures.txt"]
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
 # Sources that decide how a fit of a table comes out. Left out are sampling by renderers, flags that change a
 # measurement, reports on it, and readers of samples on no grid.
@@ -75,9 +85,10 @@ FUNCTIONS: dict[str, Callable[..., object]] = {
 
 
 class Figure(NamedTuple):
-    """A figure of a page, and where it comes from."""
+    """A figure of a page, and where it comes from; a table lies relative to the folder."""
 
     page: pathlib.Path
+    folder: pathlib.Path
     text: str
     source: str
     where: str
@@ -106,13 +117,13 @@ def number(text: str) -> tuple[float, float]:
     return (float(found[0]) / 100, digit / 100) if "%" in text else (float(found[0]), digit)
 
 
-def commands(source: str, page: str, start: int, end: int) -> str:
+def commands(source: str, page: str, start: int) -> str:
     """The commands of a source; those of a block of the page with the flags that follow `above` or `below`."""
     place, _, flags = source.partition(" ")
     if place not in ("above", "below"):
         return source
     blocks = [block for block in CODE.finditer(page)
-              if (block.end() <= start if place == "above" else block.start() >= end)]
+              if (block.end() <= start if place == "above" else block.start() >= start)]
     if not blocks:
         raise Wrong(f"has no block of commands {place}")
     block = blocks[-1 if place == "above" else 0]
@@ -120,24 +131,87 @@ def commands(source: str, page: str, start: int, end: int) -> str:
     return re.sub(r"^( *trilobe fit .*)$", rf"\1 {flags}", lines, flags=re.MULTILINE) if flags else lines
 
 
-def figures(page: pathlib.Path) -> Iterator[Figure]:
-    """The figures that a page binds; Wrong if one does not stand below its comment."""
-    text = page.read_text()
-    for comment in COMMENT.finditer(text):
-        block = BLOCK.match(text, comment.end())
-        below = " ".join(block[1].split()) if block else ""
-        source, *bound = (" ".join(part.split()) for part in re.split(r";\s", comment[2]))
+class Paragraph(NamedTuple):
+    """A paragraph of a page by how it begins, and by each of its sources FIGURE = WHERE."""
+
+    page: pathlib.Path
+    begins: str
+    sources: list[tuple[str, list[str]]]
+
+
+def paragraphs(file: pathlib.Path) -> Iterator[Paragraph]:
+    """What a file binds figures of."""
+    lines: list[str] = []
+    for line in file.read_text().splitlines():
+        if line.startswith("      ") and lines:
+            lines[-1] += " " + line.strip()
+        elif line.strip() and not line.lstrip().startswith("#"):
+            lines.append(line)
+    last: Optional[Paragraph] = None
+    for line in lines:
+        text, depth = line.strip(), len(line) - len(line.lstrip())
+        if depth == 0:
+            if last:
+                yield last
+            name, colon, begins = text.partition(": ")
+            if not colon:
+                raise Wrong(f"`{line}` names no page and paragraph")
+            last = Paragraph(pathlib.Path(os.path.normpath(file.parent / name)), begins, [])
+        elif depth == 2 and last:
+            last.sources.append((text, []))
+        elif depth == 4 and last and last.sources:
+            last.sources[-1][1].append(text)
+        else:
+            raise Wrong(f"`{line}` stands below no {'source' if depth == 4 else 'paragraph'}")
+    if last:
+        yield last
+
+
+def region(text: str, begins: str) -> tuple[int, str]:
+    """Where in a page the paragraph lies that begins so, and its words."""
+    shown = COMMENT.sub(lambda comment: re.sub(r"[^\n]", " ", comment[0]), text)
+    found = list(re.finditer("^" + r"\s+".join(map(re.escape, begins.split())), shown, re.MULTILINE))
+    if len(found) != 1:
+        raise Wrong(f"{len(found) or 'no'} paragraphs begin with `{begins}`")
+    block = BLOCK.match(shown, found[0].start())
+    return found[0].start(), " ".join(block[0].split()) if block else ""
+
+
+def figures(paragraph: Paragraph, folder: pathlib.Path) -> Iterator[Figure]:
+    """Those of a paragraph; Wrong if one does not stand in it."""
+    if not paragraph.page.exists():
+        raise Wrong("is bound, but does not exist")
+    text = paragraph.page.read_text()
+    start, there = region(text, paragraph.begins)
+    for source, bound in paragraph.sources:
+        command = source.removeprefix("nightly: ")
         if not bound:
-            raise Wrong(f"`{source}` binds no figure")
+            raise Wrong(f"`{command}` binds no figure")
         for binding in bound:
             figure, equals, where = binding.partition(" = ")
-            if not equals or not re.search(rf"(?<![\w.,]){re.escape(figure)}(?![\w%]|[.,]\d)", below, re.IGNORECASE):
-                raise Wrong(f"`{binding}` stands above no `{figure}`")
+            if not equals or not re.search(rf"(?<![\w.,]){re.escape(figure)}(?![\w%]|[.,]\d)", there, re.IGNORECASE):
+                raise Wrong(f"`{binding}`: no `{figure}` stands in `{paragraph.begins}`")
             try:
-                command = commands(source, text, comment.start(), comment.end())
+                run = commands(command, text, start)
             except Wrong as wrong:
                 raise Wrong(f"`{binding}` {wrong}") from wrong
-            yield Figure(page, figure, command, where, bool(comment[1]))
+            yield Figure(paragraph.page, folder, figure, run, where, command != source)
+
+
+def all_figures(root: pathlib.Path) -> tuple[dict[pathlib.Path, list[Figure]], dict[pathlib.Path, list[str]]]:
+    """The figures of each page, and what is wrong with how they are bound."""
+    bound: dict[pathlib.Path, list[Figure]] = {}
+    wrong: dict[pathlib.Path, list[str]] = {}
+    for file in (file for pattern in FILES for file in sorted(root.glob(pattern))):
+        try:
+            for paragraph in paragraphs(file):
+                try:
+                    bound.setdefault(paragraph.page, []).extend(figures(paragraph, file.parent))
+                except Wrong as error:
+                    wrong.setdefault(paragraph.page, []).append(str(error))
+        except Wrong as error:
+            wrong.setdefault(file, []).append(str(error))
+    return bound, wrong
 
 
 def rows(path: pathlib.Path) -> Iterator[list[list[str]]]:
@@ -201,7 +275,7 @@ def differs(figure: Figure, value: float, off: float) -> str:
 def of_table(figure: Figure) -> str:
     """Says how a figure of a table is wrong; empty if it is right."""
     try:
-        columns = table(figure.page.parent / figure.source)
+        columns = table(figure.folder / figure.source)
         value = float(eval(figure.where, {"__builtins__": {}}, {**columns, **FUNCTIONS}))  # noqa: S307
         return differs(figure, value, 0.5)
     except (OSError, NameError, TypeError, ValueError, IndexError, SyntaxError, Wrong) as error:
@@ -281,7 +355,7 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
 
 def note(page: pathlib.Path, bound: list[Figure], root: pathlib.Path) -> str:
     """The line that a page needs at its top, if any."""
-    of_tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.is_of_table}
+    of_tables = {(figure.folder / figure.source).resolve().parent for figure in bound if figure.is_of_table}
     tables = {folder for folder in of_tables if folder.name.startswith("results")}  # the book of records has no version
     own = {folder for folder in page.parent.glob("results*") if (folder / "manifest.json").exists()}
     stale = {folder: why for folder in sorted(tables | own) if (why := staleness(folder, root))}
@@ -325,16 +399,15 @@ def main() -> int:
     has_history = git(root, "rev-parse", "--is-shallow-repository") == "false"
     if not has_history:
         print("not checked: whether tables are stale, since the history is not here")
+    bound_in, unbound = all_figures(root)
+    if not options.pages:
+        pages += sorted({*bound_in, *unbound} - set(pages))
     wrong: list[str] = []
     by_command: dict[str, list[Figure]] = {}
     for page in pages:
-        try:
-            bound = list(figures(page))
-        except Wrong as error:
-            wrong.append(f"{page.relative_to(root)}: {error}")
-            continue
-        found = [of_table(figure) for figure in bound if figure.is_of_table]
-        if has_history:
+        bound = bound_in.get(page, [])
+        found = unbound.get(page, []) + [of_table(figure) for figure in bound if figure.is_of_table]
+        if has_history and page.suffix == ".md" and page not in unbound:
             found.append(set_note(page, note(page, bound, root), options.write))
         wrong += [f"{page.relative_to(root)}: {what}" for what in found if what]
         for figure in bound:

@@ -66,7 +66,7 @@ class ReferenceProblem {
   // Total weight of what reads each parameter; d and s read everything of their channel. [n]
   const VectorOf<Real>& coverage() const { return coverage_; }
 
-  // The scale for work inside a fit (docs/stored-model.md), unobserved entries filled.
+  // The scale for work inside a fit (docs/file-formats.md), unobserved entries filled.
   VectorOf<Real> Canonical(VectorOf<Real> x) const;
 
  private:

@@ -59,7 +59,7 @@ def fit(
 
     Args:
         measurement: a `Measurement`, or what `read` takes.
-        model: the form (docs/model.md, docs/model-choice.md).
+        model: the form (docs/model.md, docs/forms.md).
         solver: a name of `solvers()`.
         lobes: how many; 3 by default, of "independent" 1.
         stretch: (along, across) of isotropic models, once or for each lobe.

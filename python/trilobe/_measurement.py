@@ -276,7 +276,7 @@ def read(
         source: the file; its content tells the format.
         noise: relative noise of a synthetic material, 0 to 1.
         missing: the share of the samples that is left out at random.
-        corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
+        corrupt: what is done to it, "KIND:STRENGTH,..." (docs/your-data.md).
         cosine: takes cos theta_i to this power out of it; of cos theta_o as "o:1".
         scale: a factor of all values, as 0.01 for percents.
         azimuth: "from_mirror" where phi_o of scattered samples is counted from the mirror direction.

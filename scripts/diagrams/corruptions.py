@@ -8,7 +8,7 @@ from diagrams.fits import Folder, score, spheres, trilobe
 from diagrams.look import plt
 
 SOURCE = "synth:car-paint@30x30x60"
-# Strengths from unnoticeable to hopeless, in the units of docs/robustness.md.
+# Strengths from unnoticeable to hopeless, in the units of docs/your-data.md.
 STRENGTHS = {
     "readings": {"noise": (0.05, 0.2, 0.5, 1), "dark": (0.01, 0.1, 1, 10), "photons": ("1e7", "1e6", "1e5", "1e4"),
                  "outliers": (0.001, 0.01, 0.05, 0.5), "spikes": (0.5, 0.333, 0.2, 0.13),

@@ -19,7 +19,7 @@ DEFINE_string(model, "shared",
               "al.), anisotropic if the measurement is, else isotropic; isotropic: the same, "
               "isotropic for any measurement; anisotropic: on the nodes of the paper and without a "
               "prior; independent: one lobe, nothing shared (Bagher et al.); auto: the form that "
-              "looks best within --max_parameters (docs/model-choice.md, docs/anisotropic.md)");
+              "looks best within --max_parameters (docs/forms.md)");
 DEFINE_string(
     d_nodes, "",
     "nodes of D of an anisotropic model: theta_h by phi_h, theta_h at even steps, or with "
@@ -42,11 +42,11 @@ DEFINE_string(
     nodes, "given",
     "choice of the nodes of an anisotropic model. given: by --d_nodes and --g_nodes, or "
     "by default; held_out: those of D and G, from coarse to fine, with the least error on "
-    "directions that are held out (docs/anisotropic.md)");
+    "directions that are held out (docs/forms.md)");
 DEFINE_double(prior, 1,
               "weight of a small model, fitted first, between the directions of scattered samples; "
-              "it counts much less where no azimuths matter (docs/anisotropic.md, "
-              "docs/few-samples.md); 0: no prior, the default with --model=anisotropic");
+              "it counts much less where no azimuths matter (docs/forms.md); "
+              "0: no prior, the default with --model=anisotropic");
 
 namespace trilobe {
 namespace {

@@ -51,23 +51,29 @@ class CheckFigures(unittest.TestCase):
             {"form": "full", "settings": {"flags": flags or {"raw": True}}, "tabulated_at": revision,
              "programs": [{"name": "p", "revision": revision}]}))
 
-    def page(self, comment, text, before="# Title\n\n", after=""):
-        (self.root / "README.md").write_text(f"{before}<!-- figures{comment} -->\n{text}\n\n{after}")
+    def page(self, bound, text, before="# Title\n\n", after="", begins=""):
+        """A page whose paragraph, the text, has figures; `bound` is SOURCE; FIGURE = WHERE; ..."""
+        (self.root / "docs").mkdir(exist_ok=True)
+        (self.root / "README.md").write_text(f"{before}{text}\n\n{after}")
+        source, *figures = bound.split("; ")
+        (self.root / "docs/figures.txt").write_text("\n".join(
+            ["# of a page", "", f"../README.md: {begins or text.splitlines()[0]}", f"  {source}",
+             *(f"    {figure}" for figure in figures), ""]))
 
     def check(self, *options):
         done = subprocess.run([SCRIPT, f"--root={self.root}", *options], capture_output=True, text=True, check=False)
         self.output = done.stdout + done.stderr
         return done.returncode == 0
 
-    def holds(self, comment, text, **around):
-        self.page(comment, text, **around)
+    def holds(self, bound, text, **around):
+        self.page(bound, text, **around)
         return self.check()
 
     def of_table(self, figure, where):
-        return self.holds(f": experiments/x/results/table.csv; {figure} = {where}", f"It is {figure}.")
+        return self.holds(f"../experiments/x/results/table.csv; {figure} = {where}", f"It is {figure}.")
 
     def test_what_a_command_prints(self):
-        echo = ": echo 'E is 0.0406 %, PSNR 47.1 dB, PSNR 46.6 dB'"
+        echo = "echo 'E is 0.0406 %, PSNR 47.1 dB, PSNR 46.6 dB'"
         self.assertTrue(self.holds(echo + "; 46.6 dB = PSNR; 0.041 % = E is", "46.6\ndB, E is 0.041 %."), self.output)
         self.assertTrue(self.holds(echo + "; 47 dB = PSNR", "47 dB"), self.output)
         self.assertTrue(self.holds(echo + "; 47.1 dB = is .*? PSNR (\\S+) dB, ", "47.1 dB"), self.output)
@@ -76,11 +82,11 @@ class CheckFigures(unittest.TestCase):
         self.assertIn("46.8 dB is 46.6", self.output)
         self.assertFalse(self.holds(echo + "; 46.6 dB = SSIM", "46.6 dB"))
         self.assertIn("SSIM is not printed", self.output)
-        self.assertFalse(self.holds(": false; 46.6 dB = PSNR", "46.6 dB"))
+        self.assertFalse(self.holds("false; 46.6 dB = PSNR", "46.6 dB"))
         self.assertIn("`false` fails", self.output)
 
     def test_what_it_leaves_in_a_file(self):
-        command = """: echo '{"a": [{"share": 0.0123}]}' > b.json"""
+        command = """echo '{"a": [{"share": 0.0123}]}' > b.json"""
         self.assertTrue(self.holds(command + "; 1.2 % = b.json a.0.share", "1.2 %"), self.output)
         self.assertFalse(self.holds(command + "; 1.5 % = b.json a.0.share", "1.5 %"))
         self.assertFalse(self.holds(command + "; 1.2 % = b.json a.1.share", "1.2 %"))
@@ -91,35 +97,67 @@ class CheckFigures(unittest.TestCase):
         program.write_text("#!/bin/sh\necho \"$# arguments\"\n")
         program.chmod(0o755)
         below = "```sh\ntrilobe fit a\n```\n"
-        self.assertTrue(self.holds(": below; 2 = ^", "2", after=below), self.output)
-        self.assertTrue(self.holds(": below --b --c; 4 = ^", "four is 4", after=below), self.output)
-        self.assertTrue(self.holds(": above; three = ^", "Three", before="# T\n\n    trilobe fit a \\\n        b\n\n"),
+        self.assertTrue(self.holds("below; 2 = ^", "2", after=below), self.output)
+        self.assertTrue(self.holds("below --b --c; 4 = ^", "four is 4", after=below), self.output)
+        self.assertTrue(self.holds("above; three = ^", "Three", before="# T\n\n    trilobe fit a \\\n        b\n\n"),
                         self.output)
-        self.assertFalse(self.holds(": above; 2 = ^", "2", after=below))
+        self.assertFalse(self.holds("above; 2 = ^", "2", after=below))
         self.assertIn("no block of commands above", self.output)
 
     def test_nightly_and_measured_files(self):
-        self.page(" nightly: false; 1 = a", "1")
+        self.page("nightly: false; 1 = a", "1")
         self.assertTrue(self.check("--quick"), self.output)
         self.assertTrue(self.check("--tables"), self.output)
         self.assertFalse(self.check())
-        self.page(": cat steel.binary; 1 = a", "1")
+        self.page("cat steel.binary; 1 = a", "1")
         self.assertTrue(self.check())
         self.assertIn("not checked: 1 figures of `cat steel.binary` (steel.binary", self.output)
         (self.root / "data/merl").mkdir(parents=True)
         (self.root / "data/merl/steel.binary").write_text("a 2")
         self.assertTrue(self.check(f"--data={self.root / 'data'}"), self.output)  # 1 off the last digit
-        self.page(": cat steel.binary; 4 = a", "4")
+        self.page("cat steel.binary; 4 = a", "4")
         self.assertFalse(self.check(f"--data={self.root / 'data'}"))
 
-    def test_a_figure_stands_below_its_comment(self):
-        self.assertFalse(self.holds(": echo a 6; 6 dB = a", "46.6 dB"))
-        self.assertIn("stands above no `6 dB`", self.output)
-        self.assertFalse(self.holds(": echo a 6, 6 = a", "6"))
+    def test_a_figure_stands_in_its_paragraph(self):
+        self.assertFalse(self.holds("echo a 6; 6 dB = a", "46.6 dB"))
+        self.assertIn("no `6 dB` stands in `46.6 dB`", self.output)
+        self.assertFalse(self.holds("echo a 6, 6 = a", "6"))
         self.assertIn("binds no figure", self.output)
-        self.assertFalse(self.holds(": echo a 46; 46 = a", "46.6 dB, or 146"))
-        self.assertFalse(self.holds(": echo a 6; 6 dB = a", "A\n\n6 dB"))
-        self.assertTrue(self.holds(": echo a 6; 6 dB = a", "<!-- made by: x -->\n```text\n\n6 dB\n```"), self.output)
+        self.assertFalse(self.holds("echo a 46; 46 = a", "46.6 dB, or 146"))
+        self.assertFalse(self.holds("echo a 6; 6 dB = a", "A\n\n6 dB"))
+        self.assertTrue(self.holds("echo a 6; 6 dB = a", "```text\n\n6 dB\n```"), self.output)
+
+    def test_a_paragraph_is_found_by_its_beginning(self):
+        echo = "echo a 6; 6 = a"
+        self.assertTrue(self.holds(echo, "One\ntwo  three: 6", begins="One two three"), self.output)
+        self.assertTrue(self.holds(echo, "- 5\n- an item of 6", begins="- an item"), self.output)
+        self.assertFalse(self.holds(echo, "It is 6", begins="is 6"))
+        self.assertIn("no paragraphs begin with `is 6`", self.output)
+        self.assertFalse(self.holds(echo, "It is 6", after="It is", begins="It is"))
+        self.assertIn("2 paragraphs begin with `It is`", self.output)
+        self.assertTrue(self.holds(echo, "It is 6", after="<!--\nIt is -->\n", begins="It is"), self.output)
+        (self.root / "README.md").unlink()
+        self.assertFalse(self.check())
+        self.assertIn("README.md: is bound, but does not exist", self.output)
+
+    def test_a_file_that_cannot_be_read(self):
+        self.page("echo", "It is 6")
+        file = self.root / "docs/figures.txt"
+        for text, why in [("README.md\n", "names no page and paragraph"), ("  echo a\n", "stands below no paragraph"),
+                          ("../README.md: It is\n    6 = a\n", "stands below no source")]:
+            file.write_text(text)
+            self.assertFalse(self.check())
+            self.assertIn(f"docs/figures.txt: `{text.splitlines()[-1]}` {why}", self.output)
+        file.write_text("../README.md: It\n  echo\n      a 6\n    6 =\n      a\n")
+        self.assertTrue(self.check(), self.output)
+
+    def test_an_experiment_binds_figures_of_its_page(self):
+        (self.root / "experiments/x/README.md").write_text("# X\n\nIt is 43.6\n")
+        file = self.root / "experiments/x/figures.txt"
+        for figure, holds in [("43.6", True), ("43.5", False)]:
+            (self.root / "experiments/x/README.md").write_text(f"# X\n\nIt is {figure}\n")
+            file.write_text(f"README.md: It is\n  results/table.csv\n    {figure} = max(psnr_db)\n")
+            self.assertEqual(self.check(), holds, self.output)
 
     def test_statistics_of_a_table(self):
         for figure, where in [("40.0 dB", 'psnr_db[(material == "a") & (fit == "auto")][0]'),
@@ -136,8 +174,8 @@ class CheckFigures(unittest.TestCase):
         (self.results / "table.md").write_text(
             "| of | E above, % | PSNR, dB |\n| --- | --- |\n| 1 a | **1.53** [0, 2] | 40 |\n| 2 b | – | – |\n")
         for figure, where in [("1.5 %", 'E_above[of == "1 a"][0]'), ("40", "max(PSNR_dB)")]:
-            self.assertTrue(self.holds(f": experiments/x/results/table.md; {figure} = {where}", figure), self.output)
-        self.assertFalse(self.holds(": experiments/x/results/table.md; 1.6 % = max(E_above)", "1.6 %"))
+            self.assertTrue(self.holds(f"../experiments/x/results/table.md; {figure} = {where}", figure), self.output)
+        self.assertFalse(self.holds("../experiments/x/results/table.md; 1.6 % = max(E_above)", "1.6 %"))
 
     def test_a_page_of_stale_tables_says_so(self):
         page = self.root / "experiments/x/README.md"

@@ -42,7 +42,7 @@ struct ModelSpec {
   // The same with D and G also over azimuths, on UTIA's nodes (paper eq. 4): 2,010 parameters for
   // three lobes.
   static ModelSpec Anisotropic(int lobes);
-  // The same on nodes that generalise better between and beyond samples (docs/anisotropic.md), for
+  // The same on nodes that generalise better between and beyond samples (docs/forms.md), for
   // data with `data_phis` azimuths: D on at most 12 theta by 36 phi, F in 6 bins, G on at most 6 by
   // 24. If the data end at the last theta of G, two rings towards the horizon follow, which no
   // sample reads and to which the canonical form (gauge.h) extrapolates G.

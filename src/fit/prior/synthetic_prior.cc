@@ -38,7 +38,7 @@ constexpr int kSamplesPerParameter = 5;
 
 // A second lobe is worth its parameters if it leaves less than this share of E: 0.03 and 0.25 where
 // two kinds of threads, or a coat and its base, reflect; 0.49 and more elsewhere, where it gains 2
-// dB between the samples at most and may lose 22 (docs/anisotropic.md).
+// dB between the samples at most and may lose 22 (docs/forms.md).
 constexpr double kWorthALobe = 0.4;
 
 // Forms, start and weight of a prior, with and without measured azimuths.

@@ -35,7 +35,7 @@ FactorModel FitBySolver(const char* solver, const Objective& few, const FactorMo
                         const StopCheck& stop);
 
 // Fits stretches from the default start. If highlights widen towards grazing angles, F and G of a
-// fit without stretches may cancel over many decades (docs/stored-model.md), and stretches fitted
+// fit without stretches may cancel over many decades (docs/file-formats.md), and stretches fitted
 // from it do not recover. Nothing unless E on `few` is lower than that of `stretched`, the result
 // from the fit.
 std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,

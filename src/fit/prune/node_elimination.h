@@ -99,7 +99,7 @@ struct EliminationLimits {
 // E is approximated by `at`, with the model at its minimum. A node that becomes a combination of
 // its neighbours is a linear constraint c'y = 0. With the covariance P = H^-1 of the parameters y
 // it raises the minimum by (c'y)^2 / c'P c; rank-one updates give the new minimum and P. Parameters
-// at the bound 0 are held there by pivots on the same matrix (docs/pruning.md).
+// at the bound 0 are held there by pivots on the same matrix (docs/forms.md).
 std::vector<Elimination> OrderOfElimination(const QuadraticModel& at, const FactorModel& model,
                                             const TableLayout& layout,
                                             const EliminationLimits& limits);

@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-// Returns the smallest model found within the budget (docs/pruning.md). `full` is a fit of the
+// Returns the smallest model found within the budget (docs/forms.md). `full` is a fit of the
 // objective, with its spec. The result never exceeds the budget, up to rounding (1e-12 of E, or E
 // of a fit that is exact but for rounding). If the full model does and more lobes do not help, the
 // result is the closest model and the last decision says so. With a budget of 0 no parameter moves

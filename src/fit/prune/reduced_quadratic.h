@@ -12,7 +12,7 @@ namespace trilobe {
 
 // Damping added to the quadratic model of E, with the diagonal of J'J scaled to 1. E is quadratic
 // only near x, and parameters that the data hardly determine could move far: with 1e-6, predictions
-// are worthless (docs/pruning.md).
+// are worthless (docs/forms.md).
 inline constexpr double kQuadraticDamping = 1e-3;
 
 // Adds a penalty to H that holds the size of each table. E is flat where scale moves between a

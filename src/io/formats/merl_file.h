@@ -9,9 +9,10 @@
 
 namespace trilobe {
 
-// MERL `.binary` (docs/samples.md): 3 little-endian int32 (90, 90, 180), then float64 planes R, G,
-// B. All throw Error for bad input: too short, other dimensions, trailing bytes, ... Writing what
-// was read gives the same bytes, except that bins that do not count as measured are written as -1.
+// MERL `.binary` (docs/file-formats.md): 3 little-endian int32 (90, 90, 180), then float64 planes
+// R, G, B. All throw Error for bad input: too short, other dimensions, trailing bytes, ... Writing
+// what was read gives the same bytes, except that bins that do not count as measured are written
+// as -1.
 // ParseMerl can read the format on another grid.
 BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid = {});
 BrdfTable ReadMerl(const std::string& path);

@@ -26,7 +26,7 @@ struct RglExportOptions {
 
 // A material as an RGL tensor file (Dupuy and Jakob 2018). Readers: Mitsuba 3 (`measured`, RGB
 // variants) and powitacq_rgb; with `spectral`, Mitsuba's spectral variants and pbrt-v4. See
-// docs/renderers.md.
+// docs/rendering.md.
 struct RglExport {
   std::string bytes;
   int theta_i = 0, phi_i = 1, resolution = 0;  // nodes; rows and columns of values

@@ -36,7 +36,7 @@ class RglBrdf {
   // The largest measured theta_i, at most 90 degrees [rad].
   double max_theta() const;
 
-  // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
+  // BRDF [1/sr], >= 0 (docs/file-formats.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
 
   // For a file of isotropic spectra: their wavelengths [nm], ascending, and the BRDF [1/sr] at
@@ -61,7 +61,7 @@ class RglBrdf {
 };
 
 // The BRDF at the centres of all bins above the surface, and which of them were measured
-// (docs/samples.md). Other bins are invalid. Throws Error for an anisotropic material.
+// (docs/your-data.md). Other bins are invalid. Throws Error for an anisotropic material.
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},
                       int num_threads = 1);
 

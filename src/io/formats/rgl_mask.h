@@ -10,7 +10,7 @@
 namespace trilobe {
 
 // Nodes of an RGL file's field `rgb` that the authors measured, and those that they filled
-// (docs/samples.md).
+// (docs/your-data.md).
 class RglMask {
  public:
   // For a file whose `rgb` has `rgb_slices` = phi_i x theta_i slices of these rows and columns.

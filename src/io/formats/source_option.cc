@@ -125,7 +125,7 @@ std::vector<SourceOption> MakeOptions() {
       Option<"corrupt", &Options::corrupt>(
           {.help =
                "simulate errors of instruments, by --data_seed: KIND:STRENGTH,..., such as "
-               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)",
+               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/your-data.md)",
            .changes_values = true}),
       {.name = "tilt",
        .help = "tilt of the measured sample to correct, in degrees towards azimuth 0, from which "

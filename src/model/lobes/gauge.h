@@ -11,7 +11,7 @@ namespace trilobe {
 // Scale can move between s, D, F and G, and lobes can be reordered, without changing any BRDF
 // value. The canonical form, in which models are stored, fixes both by the light that lobes reflect
 // under uniform illumination (LobeLight), so entries with little light have no influence
-// (docs/stored-model.md):
+// (docs/file-formats.md):
 // - Each D integrates to 1 over the solid angle of half vectors, weighted by the fraction of
 //   directions above the surface (VisibleSolidAngles); in anisotropic models, over the projected
 //   solid angle.

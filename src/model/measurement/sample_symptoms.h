@@ -10,7 +10,7 @@
 namespace trilobe {
 
 // Symptoms of faults in scattered samples, as goniometers and spreadsheets have them;
-// docs/robustness.md gives their reliability. All take samples with directions.
+// docs/your-data.md gives their reliability. All take samples with directions.
 
 // Same as for tables (symptoms.h), over samples whose exchanged directions were measured, too, or
 // lie within 4 degrees of those of another sample.

@@ -9,7 +9,7 @@
 namespace trilobe {
 
 // Symptoms of faults in the values of a table, each with its reporting threshold;
-// docs/robustness.md gives their reliability.
+// docs/your-data.md gives their reliability.
 
 // If values were multiplied by cos^k theta_i, log(rho / rho with wi and wo exchanged) would be k
 // log(cos theta_i / cos theta_o). k is the median ratio of the two, over pairs whose cosines differ

@@ -150,7 +150,7 @@ const std::vector<Weighting>& Weightings() {
       PowerWeighting(
           "appearance_channel",
           "as appearance, (9 rho + mean)/10 by channel in the place of the mean: for saturated "
-          "colours (docs/model-choice.md)",
+          "colours (docs/forms.md)",
           {.exponent = 0.75,
            .epsilon = 0.05,
            .relative = true,

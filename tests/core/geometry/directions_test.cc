@@ -20,7 +20,7 @@ Direction Turned(const Direction& w, double phi) {
           w[2]};
 }
 
-// A spread of angles inside the ranges of docs/samples.md.
+// A spread of angles inside the ranges of docs/your-data.md.
 std::vector<HalfDiffAngles> Spread() {
   const MerlGrid grid{.theta_h = 9, .theta_d = 9, .phi_d = 12};
   std::vector<HalfDiffAngles> angles;

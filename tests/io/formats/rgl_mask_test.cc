@@ -1,4 +1,4 @@
-// Rules by which bins of an RGL file count as measured (docs/samples.md).
+// Rules by which bins of an RGL file count as measured (docs/your-data.md).
 
 #include "io/formats/rgl_mask.h"
 

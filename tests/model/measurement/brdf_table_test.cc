@@ -16,7 +16,7 @@ namespace {
 
 constexpr MerlGrid kSmall{.theta_h = 4, .theta_d = 5, .phi_d = 6};
 
-TEST(BrdfTable, MerlBinsAboveTheSurface) {  // docs/samples.md
+TEST(BrdfTable, MerlBinsAboveTheSurface) {  // docs/your-data.md
   const std::vector<bool> above = BinsAboveSurface(MerlGrid{});
   EXPECT_EQ(above.size(), 1'458'000U);
   EXPECT_EQ(std::ranges::count(above, true), 1'096'216);

@@ -9,7 +9,7 @@
 
 namespace trilobe {
 
-// The half-angle grid of the MERL database (docs/samples.md), at any resolution. Bins of theta_h
+// The half-angle grid of the MERL database (docs/your-data.md), at any resolution. Bins of theta_h
 // have equal width in sqrt(theta_h), bins of theta_d and phi_d equal width in the angle. Angles in
 // radians.
 struct MerlGrid {

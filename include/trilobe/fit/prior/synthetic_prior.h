@@ -25,7 +25,7 @@ struct SyntheticPriorOptions {
   // For data without azimuths: the prior is isotropic and its weight is multiplied by 0.003.
   bool isotropic = false;
   // Grid of the samples, if there is one. The interpolated residual at its nodes is added to the
-  // prior if that helps: for highlights wider than the steps of the grid (docs/anisotropic.md).
+  // prior if that helps: for highlights wider than the steps of the grid (docs/forms.md).
   std::optional<HemisphereGrid> grid = {};
   StopCheck stop = {};  // ends the fit of the prior early
 };

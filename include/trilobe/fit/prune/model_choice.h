@@ -45,7 +45,7 @@ struct ChosenModel {
   int chosen = -1;                         // index of the chosen candidate; always set
 };
 
-// Chooses the form with the highest score within a budget of parameters (docs/model-choice.md).
+// Chooses the form with the highest score within a budget of parameters (docs/forms.md).
 // Candidates: the fitted model, thinned if it is too large; and forms with stretched lobes, weights
 // by channel, unshared F or D, or one more lobe, each fitted from it by joint steps and thinned to
 // the budget. If one parameter per table exceeds the budget, Prune reduces lobes or colours.

@@ -12,7 +12,7 @@ namespace trilobe {
 
 class Readings;
 
-// A kind of instrument error that a measurement may suffer (docs/robustness.md).
+// A kind of instrument error that a measurement may suffer (docs/your-data.md).
 struct CorruptionKind {
   std::string name;     // "noise"
   std::string unit;     // of the strength: "deg"

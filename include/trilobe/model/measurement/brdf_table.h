@@ -54,7 +54,7 @@ BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid);
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid);
 
 // Whether a bin is above the surface, measured, and has finite values >= 0 in all channels
-// (docs/samples.md). [grid.size()]
+// (docs/your-data.md). [grid.size()]
 std::vector<bool> ValidBins(const BrdfTable& table);
 
 // The reason that a bin is not measured, or kNo.

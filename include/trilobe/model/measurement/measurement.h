@@ -108,7 +108,7 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement);
 PairError ReciprocityError(const Measurement& scattered);
 
 // Collects scattered samples for a reader and counts invalid ones: a direction below the surface, a
-// value that is negative or not finite (docs/samples.md).
+// value that is negative or not finite (docs/your-data.md).
 class SampleCollector {
  public:
   SampleCollector(const std::string& source, const std::string& kind);
