@@ -216,14 +216,18 @@ AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
     std::vector<double> inner, outer;  // logarithms of values
   };
   constexpr size_t kFewest = 6;  // values in a ring
-  std::map<int, Rings> incidences;
+  // By theta_i and phi_i: turned materials may change near the normal.
+  std::map<std::pair<int, int>, Rings> incidences;
   for (int j = 0; j < samples.size(); ++j) {
     constexpr double kStep = 10, kRounding = 0.01;
     const double theta_i = RadiansToDegrees(samples.directions[j].theta_i);
     const double theta_o = RadiansToDegrees(samples.directions[j].theta_o);
     const double mean = Mean(samples.rho[j]);
     if (!(theta_i > 30 - kRounding && theta_i < 60 + kRounding && mean > 0)) continue;
-    Rings& rings = incidences[static_cast<int>((theta_i + kRounding) / kStep)];
+    const double phi_i = RadiansToDegrees(samples.directions[j].phi_i) + kRounding;
+    const double turn = phi_i - 360 * std::floor(phi_i / 360);
+    Rings& rings = incidences[{static_cast<int>((theta_i + kRounding) / kStep),
+                               static_cast<int>(turn / kStep)}];
     if (theta_o < 25 + kRounding) rings.inner.push_back(std::log(mean));
     if (theta_o > 65 - kRounding) rings.outer.push_back(std::log(mean));
   }

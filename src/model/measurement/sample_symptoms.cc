@@ -407,13 +407,11 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
     told.push_back(TellLargest(scattered.samples));
     told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
     // If directions lack a sign, no other sentence about directions is right.
-    if (!scattered.anisotropic && told.back().empty()) {
+    if (told.back().empty()) {
       told.push_back(TellHighlight(some));
-      // The same holds if the highlight is out of place.
-      if (told.back().empty()) {
-        told.push_back(TellCosine(some));
-        told.push_back(TellElevation(some));
-      }
+      // The same holds if the highlight is out of place, and of a cosine that explains all.
+      if (told.back().empty()) told.push_back(TellCosine(some));
+      if (told.back().empty()) told.push_back(TellElevation(some));
     }
   }
   std::erase(told, "");

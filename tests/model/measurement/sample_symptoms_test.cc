@@ -86,6 +86,53 @@ TEST(SampleSymptoms, AHighlightTowardsTheLightIsTold) {
               ElementsAre(HasSubstr("theta_o seems to be counted from the mirror direction")));
 }
 
+// Writes a wide highlight with angles from the horizon.
+void WriteElevations(SphericalAngles* at, double* rho) {
+  const double theta_h = ToHalfDiff(ToDirections(*at)).theta_h;
+  *rho = 0.02 + 0.5 * std::exp(-theta_h * theta_h / 0.2);
+  at->theta_i = kPi / 2 - at->theta_i;
+  at->theta_o = kPi / 2 - at->theta_o;
+}
+
+// Light from several azimuths hides no fault.
+TEST(SampleSymptoms, TurnedSamplesAreToldAsOthersAre) {
+  const auto told = [](const auto& change) {
+    SampleCollector collector("x.csv", "test");
+    const BrdfSamples samples = Goniometer(change).samples;
+    for (const double turn : {0.0, kPi / 2, 2.0}) {
+      for (int j = 0; j < samples.size(); ++j) {
+        SphericalAngles at = samples.directions[j];
+        at.phi_i += turn;
+        at.phi_o += turn;
+        collector.Add(at, samples.rho[j]);
+      }
+    }
+    const Measurement turned = collector.TakeByAzimuths();
+    EXPECT_TRUE(turned.anisotropic);
+    return SymptomsOfSamples(turned);
+  };
+  EXPECT_THAT(told([](SphericalAngles*, double*) {}), IsEmpty());
+  EXPECT_THAT(told([](SphericalAngles* at, double* rho) { *rho *= std::cos(at->theta_o); }),
+              ElementsAre(HasSubstr("--cosine=o:1")));
+  EXPECT_THAT(told([](SphericalAngles* at, double*) {
+                at->phi_o = std::remainder(at->phi_o + kPi, 2 * kPi);
+              }),
+              ElementsAre(HasSubstr("--azimuth=from_mirror")));
+  EXPECT_THAT(told(WriteElevations), ElementsAre(HasSubstr("angles seem to be elevations")));
+}
+
+TEST(SampleSymptoms, OfCleanAnisotropicMaterialsThereAreNone) {
+  for (const std::string name :
+       {"linen", "charmeuse", "shot_silk", "rolled_brass", "rolled_aluminium", "brushed_aluminium",
+        "varnished_plywood", "enamelled_metal", "aniso_ggx_steel", "aniso_ggx_gold",
+        "aniso_ggx_lacquer"}) {
+    for (const std::string grid : {"@6x24", "@9x36"}) {
+      const Measurement clean = LoadMeasurement("synth:" + name + grid, {.noise = 0.02});
+      EXPECT_THAT(SymptomsOfSamples(clean), IsEmpty()) << name << grid;
+    }
+  }
+}
+
 TEST(SampleSymptoms, MoreLightThanFellIsTold) {
   for (const ReflectedAtLeast& one :
        ReflectedLightOf(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.2; }).samples)) {
@@ -125,13 +172,7 @@ TEST(SampleSymptoms, ScansOfOnePlaneTellOfMoreLightThanFell) {
 }
 
 TEST(SampleSymptoms, ElevationsInThePlaceOfZenithAnglesAreTold) {
-  const auto elevations = [](SphericalAngles* at, double* rho) {
-    const double theta_h = ToHalfDiff(ToDirections(*at)).theta_h;
-    *rho = 0.02 + 0.5 * std::exp(-theta_h * theta_h / 0.2);
-    at->theta_i = kPi / 2 - at->theta_i;
-    at->theta_o = kPi / 2 - at->theta_o;
-  };
-  EXPECT_THAT(Told(elevations), ElementsAre(HasSubstr("angles seem to be elevations")));
+  EXPECT_THAT(Told(WriteElevations), ElementsAre(HasSubstr("angles seem to be elevations")));
 }
 
 TEST(SampleSymptoms, ADroppedSignIsTold) {
@@ -283,6 +324,8 @@ TEST(SampleSymptoms, TheSharedCasesAreTold) {
   EXPECT_THAT(told("good.csv"), IsEmpty());
   EXPECT_THAT(told("cosine.csv"), ElementsAre(HasSubstr("--cosine=o:1")));
   EXPECT_THAT(told("phi0_is_specular.csv"), ElementsAre(HasSubstr("--azimuth=from_mirror")));
+  EXPECT_THAT(told("turned_cosine.csv"), ElementsAre(HasSubstr("--cosine=o:1")));
+  EXPECT_THAT(told("turned_from_mirror.csv"), ElementsAre(HasSubstr("--azimuth=from_mirror")));
   EXPECT_THAT(told("percent.csv"), ElementsAre(HasSubstr("--scale=0.01")));
   EXPECT_THAT(told("radians.csv"), testing::Contains(HasSubstr("in radians")));
   EXPECT_THAT(told("sign_dropped.csv"), ElementsAre(HasSubstr("the sign of an angle")));
