@@ -71,7 +71,7 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   std::cout << std::endl;
   if (outcome.glows) {
     std::cerr << "trilobe: the model of " << Printable(outcome.name)
-              << " reflects more light than falls on it, and would fit its samples worse without; "
+              << " reflects more light than falls on it, as its last step was stopped; "
                  "`trilobe info` of its model.json says at which angles\n";
   }
   if (!outcome.undrawn.empty()) {

@@ -15,7 +15,6 @@
 #include "fit/held_out.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
-#include "trilobe/core/math/angles.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/score.h"
@@ -180,55 +179,50 @@ void EvenOut(const Objective& solved, const StopCheck& stop, SphereScores* score
   if (even) fit->model = *std::move(even);
 }
 
-// Notes what a change of the model does to E of the data, and how long it takes.
-void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& change) {
+// One of those that follow a solver, in this order, whatever was measured: a table or samples, with
+// azimuths or without, by a fit or for a scene.
+struct FinishStep {
+  const char* name;
+  std::function<bool()> applies;
+  std::function<void()> change;
+};
+constexpr const char* kCanonicalForm = nullptr;  // changes no value, and is not noted
+
+// Takes a step, and notes what it does to E of the data and how long it takes.
+void Take(const FinishStep& step, FinishedFit* fit) {
+  if (step.name == kCanonicalForm) {
+    step.change();
+    return;
+  }
   const Stopwatch stopwatch;
   const Objective objective = fit->objective;
   const FactorModel before = fit->model;
-  change();
+  step.change();
   if (fit->model.spec() == before.spec() &&
       std::ranges::equal(fit->model.parameters(), before.parameters())) {
     return;
   }
   const double seconds = stopwatch.Seconds();
-  fit->steps.push_back({.name = name,
+  fit->steps.push_back({.name = step.name,
                         .objective_before = objective.data().Value(before),
                         .objective_after = fit->objective.data().Value(fit->model),
                         .seconds = seconds});
 }
 
-// Limits albedos unless E would rise by so much that the data themselves ask for the light. A glow
-// that remains is limited beyond the data and, as far as it takes, at their end, where few samples
-// ask for anything. Notes what is left.
-void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
-  constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3, kNotable = 1.05;
-  const Objective data(fit->objective.data(), fit->model.spec());
-  const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
-  const FactorModel before = fit->model;
-  const LightLimit limit(data, before);
-  FactorModel limited = before;
-  if (!limit.Apply(layout, stop, &limited)) return;
-  const double E = data.Value(before);
-  const double acceptable = E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy());
-  const auto take = [&](FactorModel darker) {
-    if (data.Value(darker) > acceptable) return false;
-    fit->model = std::move(darker);
-    return true;
-  };
-  const auto glows = [&](const PeakAlbedo& peak) {
-    return peak.albedo > kNotable * std::ranges::max(limit.everywhere());
-  };
-  const bool taken = take(std::move(limited));
-  if (taken && data.spec().anisotropic()) return;  // nothing is left
-  PeakAlbedo peak = PeakLight(fit->model, data.num_threads());
-  for (const double degrees : {0, 1, 3, 6}) {
-    if (taken || !glows(peak)) break;
-    limited = before;
-    if (!limit.ApplyAtEnd(DegreesToRadians(degrees), layout, stop, &limited)) continue;
-    if (!take(std::move(limited))) break;
-    peak = PeakLight(fit->model, data.num_threads());
+// No more light than falls on it, or than was measured. Notes what is left where that was stopped.
+void LimitLightOf(FinishedFit* fit, const StopCheck& stop) {
+  Objective data(fit->objective.data(), fit->model.spec());
+  const LightLimit limit(data, fit->model);
+  if (!fit->layout && ReachHorizonToLimit(limit, &data, &fit->model)) {
+    fit->objective = Objective(fit->objective, fit->model.spec());
   }
-  if (glows(peak)) fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
+  const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
+  limit.Keep(data, layout, stop, &fit->model);
+  if (!stop()) return;
+  const PeakAlbedo peak = PeakLight(fit->model, data.num_threads());
+  if (peak.albedo > std::ranges::max(limit.everywhere())) {
+    fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
+  }
 }
 
 // The form that looks best or, without pictures, fits samples best that are held out. Returns the
@@ -267,47 +261,55 @@ FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorMode
   // Must precede CorrectOvershoot, which adds more to `solved`.
   if (has_prior && options.max_parameters == 0) objective = Objective(objective.data());
   FinishedFit fit{.objective = objective, .model = std::move(model)};
-  if (options.robust > 0) {
-    NoteStep("robust", &fit, [&] { solved = FitRobustly(solved, options, &fit.model); });
-  }
-  if (options.prior != nullptr) {
-    NoteStep("between_samples", &fit,
-             [&] { CorrectOvershoot(*options.prior, options.stop, &solved, &fit.model); });
-  }
-  if (options.tie_data_edge && !options.stop()) {
-    NoteStep("data_edge", &fit, [&] { TieEntriesAtDataEdge(solved, &fit.model, options.stop); });
-  }
-  Canonicalize(coverage, &fit.model, LobeOrder::kByLight, objective.num_threads());
   std::optional<SphereScores> of_sphere;
   if (measured != nullptr) of_sphere.emplace(*measured, options.appearance);
   SphereScores* const scores = of_sphere ? &*of_sphere : nullptr;
   Weighting weighting = objective.weighting();
-  if (options.max_parameters > 0 && !options.stop()) {
-    NoteStep("form", &fit, [&] { weighting = TakeBestForm(solved, options, scores, &fit); });
-  }
-  // A robust fit has given up on some of the light.
-  if (options.match_reflectance && options.robust == 0 && scores != nullptr &&
-      !fit.model.spec().anisotropic() && !options.stop()) {
-    const Objective weighed =
-        weighting.name == objective.weighting().name
-            ? fit.objective
-            : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
-    NoteStep("reflected_light", &fit,
-             [&] { MatchReflectanceOf(weighed, options.stop, scores, &fit); });
-  }
-  // Tables of a form that was chosen are thinned.
-  if (options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) && !options.stop()) {
-    NoteStep("smoothness", &fit, [&] { SmoothOut(solved, options, scores, &fit); });
-  }
-  const bool is_full = !fit.layout || *fit.layout == TableLayout::Full(fit.model.spec());
-  if (options.smoothness > 0 && is_full && scores != nullptr && !options.stop()) {
-    NoteStep("evenness", &fit, [&] { EvenOut(solved, options.stop, scores, &fit); });
-  }
-  if (has_prior && !fit.layout) {
-    Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model);  // by the data alone
-  }
-  if (options.limit_albedo && !options.stop()) {
-    NoteStep("energy", &fit, [&] { LimitAlbedoOf(&fit, options.stop); });
+  const auto is_full = [&] {
+    return !fit.layout || *fit.layout == TableLayout::Full(fit.model.spec());
+  };
+  const FinishStep steps[] = {
+      {"robust", [&] { return options.robust > 0; },
+       [&] { solved = FitRobustly(solved, options, &fit.model); }},
+      {"between_samples", [&] { return options.prior != nullptr; },
+       [&] { CorrectOvershoot(*options.prior, options.stop, &solved, &fit.model); }},
+      {"data_edge", [&] { return options.tie_data_edge && !options.stop(); },
+       [&] { TieEntriesAtDataEdge(solved, &fit.model, options.stop); }},
+      {kCanonicalForm, [] { return true; },
+       [&] { Canonicalize(coverage, &fit.model, LobeOrder::kByLight, objective.num_threads()); }},
+      {"form", [&] { return options.max_parameters > 0 && !options.stop(); },
+       [&] { weighting = TakeBestForm(solved, options, scores, &fit); }},
+      // A robust fit has given up on some of the light.
+      {"reflected_light",
+       [&] {
+         return options.match_reflectance && options.robust == 0 && scores != nullptr &&
+                !fit.model.spec().anisotropic() && !options.stop();
+       },
+       [&] {
+         const bool same = weighting.name == objective.weighting().name;
+         const Objective weighed = same ? fit.objective
+                                        : Objective(objective.samples(), fit.model.spec(),
+                                                    weighting, objective.num_threads());
+         MatchReflectanceOf(weighed, options.stop, scores, &fit);
+       }},
+      // Tables of a form that was chosen are thinned.
+      {"smoothness",
+       [&] {
+         return options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) &&
+                !options.stop();
+       },
+       [&] { SmoothOut(solved, options, scores, &fit); }},
+      {"evenness",
+       [&] { return options.smoothness > 0 && is_full() && scores != nullptr && !options.stop(); },
+       [&] { EvenOut(solved, options.stop, scores, &fit); }},
+      // By the data alone.
+      {kCanonicalForm, [&] { return has_prior && !fit.layout; },
+       [&] { Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model); }},
+      {"energy", [&] { return options.limit_albedo && !options.stop(); },
+       [&] { LimitLightOf(&fit, options.stop); }},
+  };
+  for (const FinishStep& step : steps) {
+    if (step.applies()) Take(step, &fit);
   }
   return fit;
 }

@@ -325,7 +325,7 @@ class Fitting {
                          .prior = options_.raw ? nullptr : prior,
                          .tie_data_edge = default_solver && !options_.raw,
                          .match_reflectance = options_.match_reflectance && has_ended,
-                         .limit_albedo = !options_.raw,
+                         .limit_albedo = options_.limit_albedo && !options_.raw,
                          .appearance = Appearance(),
                          .stop = options_.stop};
     const bool has_prior = solved.has_prior();
@@ -413,7 +413,7 @@ class Fitting {
     const Objective data(part, model.spec(), options_.weighting, options_.num_threads);
     const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, data);
     model = FitToPart(JoinPrior(data, prior), std::move(model), options_.stop);
-    LightLimit(data, model).Apply(TableLayout::Full(model.spec()), options_.stop, &model);
+    LightLimit(data, model).Lower(TableLayout::Full(model.spec()), options_.stop, &model);
     return model;
   }
 

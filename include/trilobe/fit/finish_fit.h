@@ -30,7 +30,7 @@ struct FinishOptions {
       nullptr;                    // the objective's, for CorrectOvershoot; null: no correction
   bool tie_data_edge = true;      // TieEntriesAtDataEdge
   bool match_reflectance = true;  // MatchReflectance, if scores hardly suffer
-  bool limit_albedo = true;       // no more light than falls on it (LimitAlbedo)
+  bool limit_albedo = true;       // no more light than falls on it (LightLimit)
   AppearanceOptions appearance;
   StopCheck stop = {};
 };
@@ -39,7 +39,7 @@ struct FinishOptions {
 struct FinishingStep {
   // In this order: "robust", "between_samples" (CorrectOvershoot), "data_edge"
   // (TieEntriesAtDataEdge), "form" (ChooseModel), "reflected_light" (MatchReflectance),
-  // "smoothness" (Smoothest), "evenness" (WithoutRings), "energy" (LimitAlbedo).
+  // "smoothness" (Smoothest), "evenness" (WithoutRings), "energy" (LightLimit).
   std::string name;
   double objective_before = 0, objective_after = 0;  // E of the data
   double seconds = 0;
@@ -58,8 +58,7 @@ struct FinishedFit {
     double error_before = 0, error_after = 0;
   };
   std::optional<Matched> matched = std::nullopt;
-  // The largest directional albedo and its theta_i [rad], where a model had to keep more than its
-  // limit: E would have risen by more than 5 %.
+  // The largest directional albedo and its theta_i [rad], where a stop left more than the limit.
   struct Glow {
     double albedo = 0, theta_i = 0;
   };

@@ -48,6 +48,8 @@ struct FitOptions {
   bool choose_form = false;
   std::optional<int> max_parameters = {};
   bool match_reflectance = true;  // FinishOptions::match_reflectance
+  // FinishOptions::limit_albedo. Who reads single places of a material needs no physics elsewhere.
+  bool limit_albedo = true;
   // Returns the solver's model unchanged except for canonical form, which changes no value. Sets
   // smoothness to 0 and match_reflectance to false. An error with robust or choose_form.
   bool raw = false;

@@ -15,7 +15,7 @@
 #include "core/math/robust_line.h"
 #include "fit/finish/lower_g.h"
 #include "fit/prior/albedos_of.h"
-#include "fit/prior/dim_highlights.h"
+#include "fit/prior/shown_light.h"
 #include "model/lobes/beyond_data.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/geometry/merl_grid.h"
@@ -238,6 +238,8 @@ bool LowerG(const AlbedoLimits& limits, double from, const FactorAtNode& at_node
 
 AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
   constexpr double kSlack = 1.5;  // of what goes on: Fresnel factors rise steeply
+  constexpr double kMore = 1.15;  // than the mean of a cell, within it
+  constexpr double kHalf = 0.5;   // of a cell
   const BrdfSamples& samples = data.samples();
   AlbedoLimits limits{.theta_i = Angles(), .beyond = {}};
   const auto raise = [&](const Rgb& reflected) {
@@ -250,9 +252,18 @@ AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
   if (samples.on_grid()) {
     measured = MeasuredAlbedoOf(samples);
     for (const Rgb& reflected : measured.reflected) raise(reflected);
+    // In other units 1 means nothing: what goes on unmeasured in a cell is its share, and more.
+    for (int c = 0; c < kChannels; ++c) {
+      if (!(limits.everywhere[c] > kOtherUnits)) continue;
+      for (int k = 0; k < MeasuredAlbedo::kCells; ++k) {
+        if (!(measured.share[k] >= kHalf)) continue;
+        limits.everywhere[c] =
+            std::max(limits.everywhere[c], kMore * measured.reflected[k][c] / measured.share[k]);
+      }
+    }
     from = LastWellCovered(data.coverage(), model);
   } else {
-    raise(MedianAlbedoAtIncidences(samples, model, data.num_threads()));
+    limits.everywhere.fill(LimitByShown(samples, model, data.num_threads()));
     for (const SphericalAngles& at : samples.directions) {
       from = std::max({from, at.theta_i, at.theta_o});
     }
@@ -268,6 +279,17 @@ AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
     limits.beyond.push_back(limit);
   }
   return limits;
+}
+
+Rgb LimitAt(const AlbedoLimits& limits, double theta) {
+  if (!(theta > limits.beyond_theta)) return limits.everywhere;
+  Rgb limit;
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> of_channel;
+    for (const Rgb& at : limits.beyond) of_channel.push_back(at[c]);
+    limit[c] = At(theta, limits.theta_i, of_channel);
+  }
+  return limit;
 }
 
 PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads) {

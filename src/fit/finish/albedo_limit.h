@@ -20,10 +20,13 @@ struct AlbedoLimits {
 };
 
 // Limits for an isotropic fit: 1, or what the samples themselves reflect where that is more, as of
-// a measurement in other units. Scattered samples reflect the median of what `model` does at their
-// theta_i. Beyond the last well-covered entry of G, the albedo goes on as it does within the data
-// (LevelledOff), and the limit is half above that.
+// a measurement in other units (of scattered samples LimitByShown, with `model`). Beyond the last
+// well-covered entry of G, the albedo goes on as it does within the data (LevelledOff), and the
+// limit is half above that.
 AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model);
+
+// The limit at an angle: of G beyond the data, linear between its angles. [rad]
+Rgb LimitAt(const AlbedoLimits& limits, double theta);
 
 // Lowers G of all lobes where the directional albedo exceeds the limit, until it does so nowhere:
 // by the root of the excess, since both G(theta_i) and G(theta_o) make a highlight. Then holds it

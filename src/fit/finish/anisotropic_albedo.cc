@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "core/math/quantile.h"
 #include "fit/finish/lower_g.h"
+#include "fit/prior/shown_light.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/measurement/albedo.h"
-#include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {
 namespace {
@@ -82,20 +80,8 @@ class Incidences {
 }  // namespace
 
 Rgb AnisotropicAlbedoLimit(const Objective& data, const FactorModel& model) {
-  constexpr int kLookedAt = 24;
-  const BrdfSamples samples = EvenlySpread(data.samples(), kLookedAt);
-  std::vector<PolarAngles> incidences;
-  for (const SphericalAngles& at : samples.directions) {
-    incidences.push_back({std::min(at.theta_i, kFarthest), at.phi_i});
-  }
-  Rgb limit = {1, 1, 1};
-  if (incidences.empty()) return limit;
-  const std::vector<Rgb> albedos = AlbedosAt(model, incidences, data.num_threads());
-  for (int c = 0; c < kChannels; ++c) {
-    std::vector<double> of_channel;
-    for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
-    limit[c] = std::max(limit[c], UpperMedian(std::move(of_channel)));
-  }
+  Rgb limit;
+  limit.fill(LimitByShown(data.samples(), model, data.num_threads()));
   return limit;
 }
 

@@ -10,9 +10,7 @@
 
 namespace trilobe {
 
-// The largest directional albedo that an anisotropic fit may have, by channel: 1, or the median of
-// what it reflects from the directions of incidence that occur where that is more, as of a
-// measurement in other units.
+// The largest directional albedo that an anisotropic fit may have (LimitByShown).
 Rgb AnisotropicAlbedoLimit(const Objective& data, const FactorModel& model);
 
 // LimitAlbedo for anisotropic models: lowers G where the directional albedo exceeds the limit, at

@@ -6,8 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "fit/finish/light_bounds.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/core/geometry/channels.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/table_layout.h"
 
 namespace trilobe {
 
@@ -28,6 +31,11 @@ using LowerBy = std::function<void(const std::vector<double>& factors)>;
 // whether anything changed. An angle that is within its limit stays so, as G only falls.
 bool LowerWhileExceeding(size_t begin, size_t end, int passes, const StopCheck& stop,
                          const FactorsAt& factors_at, const LowerBy& lower_by);
+
+// Lowers G of all lobes at the stored nodes around each of these directions until it keeps to the
+// limit there, and the diffuse term where that alone exceeds.
+void LowerToBounds(const std::vector<LightBound>& bounds, const TableLayout& layout,
+                   int num_threads, const StopCheck& stop, FactorModel* model);
 
 }  // namespace trilobe
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "core/math/quantile.h"
-#include "fit/prior/albedos_of.h"
+#include "fit/prior/shown_light.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/fit/prior/reach.h"
@@ -18,21 +16,6 @@
 
 namespace trilobe {
 namespace {
-
-// Angles of incidence that occur, one in each degree: a highlight may be narrower than that. [rad]
-std::vector<double> IncidencesOf(const BrdfSamples& samples) {
-  std::vector<std::optional<double>> first(90);
-  for (const SphericalAngles& at : samples.directions) {
-    std::optional<double>& of_degree =
-        first[std::clamp(static_cast<int>(RadiansToDegrees(at.theta_i)), 0, 89)];
-    if (!of_degree) of_degree = at.theta_i;
-  }
-  std::vector<double> angles;
-  for (const std::optional<double>& angle : first) {
-    if (angle) angles.push_back(*angle);
-  }
-  return angles;
-}
 
 // Pairs of directions around the highlight of light from theta_i.
 std::vector<DirectionPair> AroundHighlight(double theta_i) {
@@ -53,8 +36,8 @@ std::vector<DirectionPair> AroundHighlight(double theta_i) {
 
 // Samples around the highlights that are too bright, as bright as they may be. Light into
 // directions beyond the samples is not theirs.
-BrdfSamples DimmedHighlights(const Rgb& limit, const BrdfSamples& measured,
-                             const FactorModel& model, int num_threads) {
+BrdfSamples DimmedHighlights(double limit, const BrdfSamples& measured, const FactorModel& model,
+                             int num_threads) {
   constexpr double kEnough = 0.9;  // so that few rounds do
   constexpr double kStep = DegreesToRadians(2), kFarthest = DegreesToRadians(88);
   const PreparedModel<double> prepared(model);
@@ -71,8 +54,7 @@ BrdfSamples DimmedHighlights(const Rgb& limit, const BrdfSamples& measured,
   dimmed.source = measured.source;
   dimmed.grid = measured.grid;
   for (size_t k = 0; k < angles.size(); ++k) {
-    double excess = 1;
-    for (int c = 0; c < kChannels; ++c) excess = std::max(excess, albedos[k][c] / limit[c]);
+    const double excess = std::ranges::max(albedos[k]) / limit;
     if (!(excess > 1)) continue;
     for (const DirectionPair& pair : AroundHighlight(angles[k])) {
       dimmed.directions.push_back(ToSphericalAngles(pair));
@@ -86,27 +68,12 @@ BrdfSamples DimmedHighlights(const Rgb& limit, const BrdfSamples& measured,
 
 }  // namespace
 
-Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& model,
-                             int num_threads) {
-  const std::vector<double> angles = IncidencesOf(samples);
-  Rgb median{};
-  if (angles.empty()) return median;
-  const std::vector<Rgb> albedos = AlbedosOf(model, angles, num_threads);
-  for (int c = 0; c < kChannels; ++c) {
-    std::vector<double> of_channel;
-    for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
-    median[c] = UpperMedian(std::move(of_channel));
-  }
-  return median;
-}
-
 bool DimHighlights(const StopCheck& stop, Objective* objective, FactorModel* model) {
   constexpr int kRounds = 4, kSteps = 10;
   constexpr double kWeight = 0.01, kMore = 10;
   const BrdfSamples& measured = objective->data().samples();
   const int threads = objective->num_threads();
-  Rgb limit = MedianAlbedoAtIncidences(measured, *model, threads);
-  for (double& x : limit) x = std::max(x, 1.0);
+  const double limit = LimitByShown(measured, *model, threads);
   SolverOptions options;
   options.max_iterations = kSteps;
   options.diagnose = false;

@@ -2,23 +2,16 @@
 #define TRILOBE_FIT_PRIOR_DIM_HIGHLIGHTS_H_
 
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 
-// The median of what an isotropic model reflects from the theta_i that occur among scattered
-// samples; 0 if none has directions.
-Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& model, int num_threads);
-
 // Between few incidences of a mirror-like scan nothing says how bright the highlight is, and a fit
 // may reflect a hundred times the light. Refits an isotropic model of scattered samples until, up
-// to their largest theta, its directional albedo is nowhere above 1, or what it reflects at their
-// incidences where that is more: samples around each highlight that is too bright join those of
-// `objective`, darker by what it exceeds, and count ten times as much each round. Up to four
-// rounds. Returns whether anything changed.
+// to their largest theta, its directional albedo is nowhere above its limit (LimitByShown): samples
+// around each highlight that is too bright join those of `objective`, darker by what it exceeds,
+// and count ten times as much each round. Up to four rounds. Returns whether anything changed.
 bool DimHighlights(const StopCheck& stop, Objective* objective, FactorModel* model);
 
 }  // namespace trilobe

@@ -35,7 +35,7 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
     case Advice::kGlows:
       return "it reflects " + Text(facts.glow, 3) + " times the light from " +
              Text(RadiansToDegrees(facts.glow_theta_i), 3) +
-             " deg, and would fit the samples worse without; a renderer shows a glow there";
+             " deg, as its last step was stopped; a renderer shows a glow there";
     case Advice::kRings:
       return "under even light a renderer shows rings: the reflected share jumps by " +
              Text(100 * facts.ripple, 2) + " % near " +

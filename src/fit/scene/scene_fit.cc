@@ -183,6 +183,7 @@ class MaterialFitter {
     options.solver_options = [this](const ModelSpec& /*spec*/) { return settings_.options; };
     options.weighting = WeightingFor(*measured_);
     options.compare = false;
+    options.limit_albedo = !material_.reads_places();
     options.seed = settings_.seed;
     options.num_threads = num_threads_;
     options.stop = settings_.stop;
@@ -260,8 +261,8 @@ class MaterialFitter {
                   PrunedModel* pruned) const {
     if (!light) return;
     FactorModel limited = pruned->model;
-    if (!light->Apply(pruned->layout, settings_.stop, &limited)) return;
     const Objective of_pruned(data, pruned->model.spec());
+    if (!light->Keep(of_pruned, pruned->layout, settings_.stop, &limited)) return;
     const double E = of_pruned.Value(limited);
     pruned->decisions.push_back({.what = "G lowered",
                                  .parameters_before = pruned->num_parameters,
@@ -296,7 +297,7 @@ class MaterialFitter {
         // The model will be kept from making light, which takes longer to see.
         FactorModel limited = judged;
         const TableLayout all = TableLayout::Full(judged.spec());
-        if (!light->Apply(all, settings_.stop, &limited)) return error;
+        if (!light->Lower(all, settings_.stop, &limited)) return error;
         return std::max(error, error_of(judge.CompareQuickly(limited)));
       };
       PrunedModel pruned = PruneWithin(problem, model, options);

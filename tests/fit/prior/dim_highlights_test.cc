@@ -62,19 +62,5 @@ TEST(DimHighlights, WhatIsNotTooBrightStaysAsItIs) {
   EXPECT_EQ(objective.samples().size(), samples.size());
 }
 
-TEST(DimHighlights, ALimitIsWhatIsReflectedAtTheIncidences) {
-  BrdfSamples samples;
-  for (const double degrees : {10.0, 30.0, 50.0}) {
-    samples.directions.push_back({DegreesToRadians(degrees), 0, 0, 0});
-    samples.angles.push_back(ToHalfDiff(ToDirections(samples.directions.back())));
-    samples.rho.push_back({1, 1, 1});
-  }
-  FactorModel diffuse(ModelSpec::SharedFactors(0));
-  std::ranges::fill(diffuse.d(), 5 / kPi);
-  for (const double x : MedianAlbedoAtIncidences(samples, diffuse, 1)) EXPECT_NEAR(x, 5, 1e-2);
-  samples.directions.clear();
-  EXPECT_EQ(MedianAlbedoAtIncidences(samples, diffuse, 1), Rgb{});
-}
-
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

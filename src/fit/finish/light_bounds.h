@@ -1,0 +1,38 @@
+#ifndef TRILOBE_FIT_FINISH_LIGHT_BOUNDS_H_
+#define TRILOBE_FIT_FINISH_LIGHT_BOUNDS_H_
+
+#include <vector>
+
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// The share of the light from a direction that may be reflected, by channel.
+struct LightBound {
+  PolarAngles at;  // [rad]
+  Rgb limit;
+};
+
+// The directional albedo of a model, isotropic or not, by the rule of DirectionalAlbedo.
+Rgb AlbedoFrom(const PolarAngles& at, const FactorModel& model);
+std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
+                             int num_threads);
+
+// By how much an albedo exceeds its limit at most: A / limit over the channels. Up to
+// 1 + kLightTolerance it keeps to it.
+inline constexpr double kLightTolerance = 1e-3;
+double ExcessOf(const Rgb& albedo, const Rgb& limit);
+
+// Each half degree of theta up to 89.5 degrees and, of an anisotropic model, each 5 degrees of
+// azimuth where its directional albedo exceeds the limit. All are looked at quickly: by fewer
+// azimuths of half vectors and, of an anisotropic model, by lobes, which reflect
+//   A_m(theta, phi) = K_m(theta, phi) G_m(theta, phi) / cos theta,
+// with the smooth K_m interpolated. Those that may exceed are looked at well. The same bits for any
+// number of threads.
+std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& model, int num_threads);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_FINISH_LIGHT_BOUNDS_H_

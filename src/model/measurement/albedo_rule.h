@@ -1,0 +1,51 @@
+#ifndef TRILOBE_MODEL_MEASUREMENT_ALBEDO_RULE_H_
+#define TRILOBE_MODEL_MEASUREMENT_ALBEDO_RULE_H_
+
+#include <algorithm>
+#include <cmath>
+
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/math/angles.h"
+
+namespace trilobe {
+
+// Half planes through the normal, in which DirectionalAlbedo integrates.
+inline constexpr int kAlbedoAzimuths = 180;
+
+// The rule of DirectionalAlbedo for light from theta_i in the plane of x and z:
+//   integral of rho(wi, wo) cos theta_o d omega_o ~ 2 pi / azimuths sum weight rho(pair),
+// by two-point Gauss-Legendre rules in the MERL bins of theta_h. Calls visit(pair, weight).
+template <typename Visitor>
+void VisitReflected(double theta_i, int azimuths, const Visitor& visit) {
+  // On [0, 1].
+  constexpr double kGaussNodes[] = {0.21132486540518712, 0.78867513459481288};
+  const MerlGrid grid;
+  const Direction wi{std::sin(theta_i), 0, std::cos(theta_i)};
+  for (int k = 0; k < azimuths; ++k) {
+    const double phi = (k + 0.5) / azimuths * 2 * kPi;
+    const double cos_phi = std::cos(phi), sin_phi = std::sin(phi);
+    // With psi = atan2(sin theta_i cos phi, cos theta_i), cos theta_o is proportional to
+    // cos(2 theta_h - psi), and wi . h to cos(theta_h - psi).
+    const double psi = std::atan2(wi[0] * cos_phi, wi[2]);
+    const double end = (psi + kPi / 2) / 2;
+    for (int bin = 0; bin < grid.theta_h && grid.ThetaH(bin) < end; ++bin) {
+      const double from = grid.ThetaH(bin);
+      const double width = std::min(grid.ThetaH(bin + 1), end) - from;
+      for (const double node : kGaussNodes) {
+        const double theta_h = from + node * width;
+        const double sin_h = std::sin(theta_h), cos_h = std::cos(theta_h);
+        const Direction h{sin_h * cos_phi, sin_h * sin_phi, cos_h};
+        const double wi_dot_h = wi[0] * h[0] + wi[2] * h[2];
+        const Direction wo{2 * wi_dot_h * h[0] - wi[0], 2 * wi_dot_h * h[1],
+                           2 * wi_dot_h * h[2] - wi[2]};
+        if (!(wo[2] > 0)) continue;  // rounding, at the very horizon
+        visit(DirectionPair{wi, wo}, wo[2] * 4 * wi_dot_h * sin_h * width / 2);
+      }
+    }
+  }
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_MEASUREMENT_ALBEDO_RULE_H_
