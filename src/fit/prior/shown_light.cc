@@ -78,8 +78,8 @@ std::vector<PolarAngles> Incidences(const BrdfSamples& samples, int degrees) {
   return incidences;
 }
 
-// Light of a diffuse base as dark as the darkest sample; 0 where samples of a highlight alone do not
-// tell one.
+// Light of a diffuse base as dark as the darkest sample; 0 where samples of a highlight alone do
+// not tell one.
 double DiffuseLight(const BrdfSamples& samples) {
   constexpr double kAway = DegreesToRadians(20);
   if (std::ranges::none_of(samples.angles,
