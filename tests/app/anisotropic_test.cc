@@ -22,6 +22,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 constexpr const char* kVelvet = "synth:velvet@4x12";
+constexpr const char* kSilk = "synth:shot_silk@4x12";  // of which there is nothing to note
 
 class AnisotropicCommands : public testing::Test {
  protected:
@@ -175,7 +176,7 @@ TEST_F(AnisotropicCommands, WhatCannotBeIsOneLine) {
   ExpectRefusal({"plot", model, "synth:plastic@30x30x60", "--out=" + In("p")}, "knows no azimuths");
   ExpectRefusal({"score", model, "synth:plastic@30x30x60"}, "knows no azimuths");
   ExpectRefusal({"fit", "synth:plastic@30x30x60", "--init=" + model}, "knows no azimuths");
-  ExpectRefusal({"fit", kVelvet, "--model=auto", "--nodes=held_out"}, "auto chooses the nodes");
+  ExpectRefusal({"fit", kSilk, "--model=auto", "--nodes=held_out"}, "auto chooses the nodes");
   ExpectRefusal({"score", kVelvet, kVelvet}, "needs a table");
   ExpectRefusal({"compare", In("fit")}, "plan.json");
 }
@@ -240,9 +241,9 @@ TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
 // The report says what was tried; the model is of the form that looks best, within the budget.
 TEST_F(AnisotropicCommands, FitChoosesTheFormThatLooksBest) {
   const ProgramResult fit =
-      RunProgram({"fit", "synth:velvet@4x12", "--model=auto", "--lobes=1", "--max_parameters=300",
-                  "--solver=awls", "--max_iterations=2", "--nodiagnose", "--convergence",
-                  "--verbose", "--noplots", "--out=" + In("form")});
+      RunProgram({"fit", "synth:shot_silk@4x12", "--model=auto", "--lobes=1",
+                  "--max_parameters=300", "--solver=awls", "--max_iterations=2", "--nodiagnose",
+                  "--convergence", "--verbose", "--noplots", "--out=" + In("form")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("the best of "));
   EXPECT_THAT(fit.out, HasSubstr("<- chosen"));
@@ -259,14 +260,14 @@ TEST_F(AnisotropicCommands, FitChoosesTheFormThatLooksBest) {
 }
 
 TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
-  ExpectRefusal({"fit", kVelvet, "--nodes=all"}, "known: given, held_out");
-  ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--d_nodes=4x12"}, "leave out --d_nodes");
-  ExpectRefusal({"fit", kVelvet, "--stretch=0.1,0.2"}, "--stretch is for isotropic models");
-  ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--model=isotropic"},
+  ExpectRefusal({"fit", kSilk, "--nodes=all"}, "known: given, held_out");
+  ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--d_nodes=4x12"}, "leave out --d_nodes");
+  ExpectRefusal({"fit", kSilk, "--stretch=0.1,0.2"}, "--stretch is for isotropic models");
+  ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--model=isotropic"},
                 "--nodes is for anisotropic models");
   ExpectRefusal({"fit", "synth:plastic@30x30x60", "--nodes=held_out"},
                 "--nodes is for anisotropic models");
-  ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--init=" + In("fit/model.json")},
+  ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--init=" + In("fit/model.json")},
                 "brings its own lobes and tables");
 }
 

@@ -1,5 +1,6 @@
 #include "fit/finish/light_refit.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,30 +55,28 @@ class BoundedLight {
     std::vector<Slopes> slopes(exceeding.size());
     ParallelFor(static_cast<int>(exceeding.size()), num_threads_,
                 [&](int j) { slopes[j] = SlopesAt(model, bounds_[exceeding[j]].at); });
+    // Rows of the Jacobian of the residuals log(A / limit): the slope of log A is that of A over A.
+    const auto n = static_cast<Eigen::Index>(model.parameters().size());
+    Eigen::MatrixXd rows(n, kChannels * exceeding.size());
+    Eigen::Index count = 0;
+    Eigen::Map<Eigen::VectorXd> gradient(at->gradient.data(), n);
     for (size_t j = 0; j < exceeding.size(); ++j) {
       for (int c = 0; c < kChannels; ++c) {
         const size_t k = exceeding[j];
         const double residual = Residual(k, albedos[k], c);
-        if (residual > 0) AddSquare(price, residual, albedos[k][c], slopes[j][c], at);
+        if (!(residual > 0)) continue;
+        rows.col(count) = Eigen::Map<const Eigen::VectorXd>(slopes[j][c].data(), n) *
+                          (std::sqrt(price) / albedos[k][c]);
+        gradient += std::sqrt(price) * residual * rows.col(count);
+        ++count;
       }
     }
+    Eigen::Map<Eigen::MatrixXd> H(at->H.data(), n, n);
+    H.noalias() += rows.leftCols(count) * rows.leftCols(count).transpose();
   }
 
  private:
   using Slopes = std::array<std::vector<double>, kChannels>;
-
-  // Adds a squared residual log(A / limit): the slope of log A is that of A over A.
-  static void AddSquare(double price, double residual, double A, const std::vector<double>& slope,
-                        QuadraticModel* at) {
-    const size_t n = slope.size();
-    for (size_t a = 0; a < n; ++a) {
-      if (slope[a] == 0) continue;
-      at->gradient[a] += price * residual * slope[a] / A;
-      const double scaled = price * slope[a] / (A * A);
-      double* const row = &at->H[a * n];
-      for (size_t b = 0; b < n; ++b) row[b] += scaled * slope[b];
-    }
-  }
 
   double Residual(size_t k, const Rgb& albedo, int c) const {
     const double aim = kAim * bounds_[k].limit[c];

@@ -65,6 +65,7 @@ std::optional<BrdfTable> TableOfSamples(const Measurement& scattered) {
 }
 
 std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
+  if (scattered.table) return std::nullopt;
   CheckDirections(scattered);
   const std::vector<SphericalAngles>& directions = scattered.samples.directions;
   const auto other_light = [&](const SphericalAngles& at) {

@@ -39,7 +39,11 @@ TEST(GridOf, FindsNoneWhereSamplesStandAnyhow) {
   twice.samples.directions[100] = twice.samples.directions[101];
   EXPECT_EQ(GridOf(twice), std::nullopt);
   Measurement isotropic = Velvet();
-  isotropic.anisotropic = false;
+  isotropic.anisotropic = false;  // azimuths are given, though they do not matter
+  EXPECT_EQ(GridOf(isotropic), GridOf(Velvet()));
+  std::erase_if(isotropic.samples.directions, [](const auto& at) { return at.phi_i > 0; });
+  isotropic.samples.angles.resize(isotropic.samples.directions.size());
+  isotropic.samples.rho.resize(isotropic.samples.directions.size());
   EXPECT_EQ(GridOf(isotropic), std::nullopt);
   EXPECT_EQ(GridOf(Velvet({.max_angle_deg = 10})), std::nullopt);  // the normal alone
 }
