@@ -282,16 +282,16 @@ void DescribeScattered(const Measurement& measurement) {
   Print("reciprocity error", reciprocity);
   if (!reflected.empty()) PrintLine("reflects at least", ReflectedText(reflected));
   if (anisotropy) {
-    std::string text = "unknown: no sample was measured with the material turned";
+    std::string change = "unknown: no sample was measured with the material turned";
     if (anisotropy->samples > 0) {
-      text = Text(100 * anisotropy->share, 3) +
-             " % of the energy is not in the mean over all turns, " +
-             std::to_string(anisotropy->samples) + " samples";
+      change = Text(100 * anisotropy->share, 3) +
+               " % of the energy is not in the mean over all turns, " +
+               std::to_string(anisotropy->samples) + " samples";
     }
     if (anisotropy->with_neighbours > 0) {
-      text += "; beyond noise " + Text(100 * std::max(0.0, anisotropy->smooth_share), 3) + " %";
+      change += "; beyond noise " + Text(100 * std::max(0.0, anisotropy->smooth_share), 3) + " %";
     }
-    PrintLine("anisotropy", text);
+    PrintLine("anisotropy", change);
   }
   if (!picture.empty()) PrintLine("written", picture);
   for (const std::string& note : measurement.notes) PrintLine("note", note);

@@ -58,16 +58,17 @@ void DefineFlag(const std::string& name, const std::string& help,
                 const OptionValue& default_value) {
   const auto [place, added] = Storage().insert({name, {default_value, default_value}});
   if (!added) return;
+  FlagStorage& storage = place->second;
   // gflags keeps the pointers.
   static std::list<std::string> texts;
   const std::string& flag = place->first;
   const std::string& text = texts.emplace_back(help);
   std::visit(
       [&](auto& value) {
-        auto& at_first = std::get<std::decay_t<decltype(value)>>(place->second.default_value);
+        auto& at_first = std::get<std::decay_t<decltype(value)>>(storage.default_value);
         gflags::FlagRegisterer(flag.c_str(), text.c_str(), __FILE__, &value, &at_first);
       },
-      place->second.value);
+      storage.value);
 }
 
 const OptionValue& FlagValue(const std::string& name) { return Storage().at(name).value; }

@@ -157,7 +157,7 @@ std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const Factor
   const PreparedModel<double> prepared(model);
   std::vector<Rgb> albedos(bounds.size());
   ParallelFor(static_cast<int>(bounds.size()), num_threads, [&](int k) {
-    const auto [theta, phi] = bounds[k].at;
+    const double theta = bounds[k].at.theta, phi = bounds[k].at.phi;
     albedos[k] = DirectionalAlbedo(
         [&](const DirectionPair& pair) {
           return phi == 0 ? prepared.Value(pair.wi, pair.wo)

@@ -104,7 +104,7 @@ double ShownLight(const BrdfSamples& samples, const FactorModel& model, int num_
   const double least_cosine = std::cos(LargestTheta(samples));
   std::vector<double> largest(incidences.size());
   ParallelFor(static_cast<int>(incidences.size()), num_threads, [&](int k) {
-    const auto [theta, phi] = incidences[k];
+    const double theta = incidences[k].theta, phi = incidences[k].phi;
     Rgb light{};
     VisitReflected(
         std::min(theta, kFarthest), kAzimuths, [&](const DirectionPair& pair, double weight) {
