@@ -53,9 +53,9 @@ std::string Advice(std::span<const double> wavelengths) {
   std::vector<double> from_longest(wavelengths.begin(), wavelengths.end());
   std::ranges::sort(from_longest, std::greater<>());
   const auto text = [&](size_t k) { return Text(from_longest[k], kDigits); };
-  const auto same =
-      std::ranges::unique(from_longest, {}, [](double x) { return Text(x, kDigits); });
-  from_longest.erase(same.begin(), same.end());
+  const auto same_text = [](double a, double b) { return Text(a, kDigits) == Text(b, kDigits); };
+  from_longest.erase(std::unique(from_longest.begin(), from_longest.end(), same_text),
+                     from_longest.end());
   const size_t last = from_longest.size() - 1, middle = from_longest.size() / 2;
   std::string three;
   if (last >= 2) {

@@ -15,7 +15,7 @@ namespace {
 struct Band {
   double x, y, z, d65;
 };
-constexpr double kFirst = 380, kStep = 5;  // [nm]
+constexpr double kFirst = 380, kBandStep = 5;  // [nm]
 constexpr Band kBands[] = {
     {0.001368, 3.9e-05, 0.00645, 49.9755},  // 380
     {0.002236, 6.4e-05, 0.01055, 52.3118},  // 385
@@ -144,7 +144,7 @@ SpectralColor::SpectralColor(std::span<const double> wavelengths, const std::str
       if (between) weights_[k][c] += t * weight;
       white[c] += weight;
     }
-    at += kStep;
+    at += kBandStep;
   }
   for (Rgb& weights : weights_) {
     for (int c = 0; c < kChannels; ++c) weights[c] /= white[c];
