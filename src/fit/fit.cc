@@ -430,15 +430,14 @@ class Fitting {
 }  // namespace
 
 FitResult Fit(const Measurement& measurement, const FitOptions& options) {
-  const auto fit = [](const auto& data, const auto& by) { return Fitting(data, by).Run(); };
-  if (!ChoosesAzimuths(measurement, options)) return fit(measurement, options);
+  if (!ChoosesAzimuths(measurement, options)) return Fitting(measurement, options).Run();
   AzimuthChoice choice =
       ChooseAzimuths(measurement, CheckOptions(options),
-                     [&fit](const auto& data, const auto& by) { return ModelOf(fit(data, by)); });
-  FitResult result =
-      choice.matter ? fit(measurement, options) : fit(WithoutAzimuths(measurement), options);
-  result.azimuths = std::move(choice);
-  return result;
+                     [](const auto& data, const auto& by) { return ModelOf(Fit(data, by)); });
+  FitResult fit = choice.matter ? Fitting(measurement, options).Run()
+                                : Fitting(WithoutAzimuths(measurement), options).Run();
+  fit.azimuths = std::move(choice);
+  return fit;
 }
 
 FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,

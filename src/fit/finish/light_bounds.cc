@@ -148,10 +148,6 @@ std::vector<LightBound> NearAnisotropic(double share, const Rgb& limit, const Fa
 
 }  // namespace
 
-Rgb AlbedoFrom(const PolarAngles& at, const FactorModel& model) {
-  return AlbedosFrom({{at, {}}}, model, 1).front();
-}
-
 std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
                              int num_threads) {
   const PreparedModel<double> prepared(model);

@@ -15,8 +15,8 @@ struct LightBound {
   Rgb limit;
 };
 
-// The directional albedo of a model, isotropic or not, by the rule of DirectionalAlbedo.
-Rgb AlbedoFrom(const PolarAngles& at, const FactorModel& model);
+// The directional albedos of a model, isotropic or not, from the directions of bounds, by the rule
+// of DirectionalAlbedo.
 std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
                              int num_threads);
 

@@ -31,9 +31,9 @@ class LightLimit {
   // Changes as little as it takes for the model to keep to the limit; whether anything changed.
   // First G is lowered: of all angles or, where E of `data` would rise by more than 5 % and by more
   // than a thousandth of a black model's, of the last degrees of the data and beyond. Where that is
-  // not enough or dear (5 % and 1e-5 of that energy), the model is refitted under the limit
-  // (RefitWithinBounds), so that what no sample reads gives way, and of what they read no more than
-  // it takes.
+  // not enough or dear (5 % and 1e-5 of that energy, of an anisotropic model 1e-4), the model is
+  // refitted under the limit (RefitWithinBounds), so that what no sample reads gives way, and of
+  // what they read no more than it takes.
   bool Keep(const Objective& data, const TableLayout& layout, const StopCheck& stop,
             FactorModel* model) const;
 

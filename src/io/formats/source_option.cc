@@ -109,6 +109,9 @@ bool IsSynth(std::string_view reader, const Measurement& /*measurement*/) {
 }
 bool IsText(std::string_view reader, const Measurement& /*measurement*/) { return reader == "csv"; }
 
+// -1 stands for no angle.
+bool IsAngleOrNone(double degrees) { return degrees == -1 || (degrees >= 0 && degrees < 90); }
+
 std::vector<SourceOption> MakeOptions() {
   using Options = SourceOptions;
   return {
@@ -177,8 +180,7 @@ std::vector<SourceOption> MakeOptions() {
           {.help = "leave out bins whose theta_d, half the angle between the two directions, is "
                    "below this, since a detector there blocks the light; -1: as far as scattered "
                    "samples show that it did",
-           .range = {"in degrees from 0 to below 90, or -1 to go by the data",
-                     [](double x) { return x == -1 || (x >= 0 && x < 90); }},
+           .range = {"in degrees from 0 to below 90, or -1 to go by the data", IsAngleOrNone},
            .changes_values = true}),
       Option<"extrapolated", &Options::extrapolated>(
           {.help = "for an RGL file: also take values that its authors extrapolated instead of "
@@ -208,8 +210,7 @@ std::vector<SourceOption> MakeOptions() {
            .applies = IsText}),
       Option<"theta_i", &Options::theta_i_deg>(
           {.help = "angle of incidence of all samples of a text table without a column theta_i",
-           .range = {"in degrees from 0 to below 90, or -1 for none",
-                     [](double x) { return x == -1 || (x >= 0 && x < 90); }},
+           .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},
            .of = "--theta_i is of text tables",
            .applies = IsText}),
       Option<"bands", &Options::bands>(
