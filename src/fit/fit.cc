@@ -76,12 +76,6 @@ FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
           .date = {}};
 }
 
-// Whether a solver had found what it looks for.
-bool HasEnded(StopReason reason) {
-  return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
-         reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
-}
-
 // The model, if nobody stopped the fit and it could choose the form that it was asked for.
 std::optional<FactorModel> ModelOf(FitResult fit) {
   if (fit.interrupted || fit.finished.too_few_to_choose > 0) return std::nullopt;

@@ -4,6 +4,11 @@
 
 namespace trilobe {
 
+bool HasEnded(StopReason reason) {
+  return reason != StopReason::kMaxIterations && reason != StopReason::kMaxSeconds &&
+         reason != StopReason::kInterrupted;
+}
+
 const char* StopReasonName(StopReason reason) {
   switch (reason) {
     case StopReason::kConverged:

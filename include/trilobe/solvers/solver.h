@@ -29,6 +29,9 @@ enum class StopReason {
 };
 const char* StopReasonName(StopReason reason);  // "converged", "exact_fit", ...
 
+// Whether a solver has found what it looks for: neither a limit nor a callback stopped it.
+bool HasEnded(StopReason reason);
+
 // Time spent in each phase of a run [s]. Times of phases that run in parallel are added up. The
 // phases do not cover all of a run.
 struct PhaseSeconds {

@@ -124,25 +124,22 @@ std::string ReachText(const Reach& reach) {
 }
 
 ReportedVerdict VerdictOn(const FitReport& report) {
-  const StopReason reason = report.summary.stop_reason;
-  return MakeVerdict(
-      report.appearance, report.samples_seen,
-      {.measured_share = report.measured_share,
-       .samples = report.fit.valid_samples,
-       .parameters = report.stored_parameters,
-       .black = !(report.black_objective > 0),
-       .whole = report.whole},
-      {.interrupted = report.interrupted,
-       .ended = reason != StopReason::kMaxIterations && reason != StopReason::kMaxSeconds &&
-                reason != StopReason::kInterrupted,
-       .may_choose_form = MayChooseForm(report),
-       .default_solver = report.summary.solver == Solvers().front().name,
-       .irreducible = IrreducibleShare(report.score),
-       .left_out = report.left_out,
-       .glow = report.finished.glow ? report.finished.glow->albedo : 0,
-       .glow_theta_i = report.finished.glow ? report.finished.glow->theta_i : 0,
-       .ripple = report.ripple.share,
-       .ripple_theta_i = report.ripple.theta_i});
+  return MakeVerdict(report.appearance, report.samples_seen,
+                     {.measured_share = report.measured_share,
+                      .samples = report.fit.valid_samples,
+                      .parameters = report.stored_parameters,
+                      .black = !(report.black_objective > 0),
+                      .whole = report.whole},
+                     {.interrupted = report.interrupted,
+                      .ended = HasEnded(report.summary.stop_reason),
+                      .may_choose_form = MayChooseForm(report),
+                      .default_solver = report.summary.solver == Solvers().front().name,
+                      .irreducible = IrreducibleShare(report.score),
+                      .left_out = report.left_out,
+                      .glow = report.finished.glow ? report.finished.glow->albedo : 0,
+                      .glow_theta_i = report.finished.glow ? report.finished.glow->theta_i : 0,
+                      .ripple = report.ripple.share,
+                      .ripple_theta_i = report.ripple.theta_i});
 }
 
 void PrintSummary(const FitReport& report) {
