@@ -76,7 +76,9 @@ Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
   Measurement measurement = azimuths == "auto" ? collector.TakeByAzimuths() : collector.Take();
   if (azimuths != "auto") {
     measurement.anisotropic = measurement.azimuths_matter = azimuths == "yes";
-  } else if (measurement.anisotropic) {
+  }
+  TakeMerlBinsAsTable(&measurement);
+  if (azimuths == "auto" && measurement.anisotropic) {
     measurement.notes.emplace_back(
         "light comes from several azimuths: a fit finds out whether the material depends on them; "
         "anisotropic=True or anisotropic=False says so, and is sooner fitted");

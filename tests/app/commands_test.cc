@@ -462,17 +462,17 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   EXPECT_EQ(result.out, "wrote " + felt + ": CSV, " + valid + " samples\n");
   EXPECT_THAT(Contents(felt), StartsWith("# BRDF [1/sr] of " + valid + " pairs"));
   const json read = json::parse(RunProgram({"info", felt, "--json"}).out);
-  EXPECT_EQ(read["samples"]["valid"], table["bins"]["valid"]);
+  EXPECT_EQ(read["bins"]["valid"], table["bins"]["valid"]);
   EXPECT_EQ(read["min"], table["min"]);
   EXPECT_EQ(read["max"], table["max"]);
   // CSV is converted to CSV, all of it or a part.
   EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy}).status, 0);
   json again = json::parse(RunProgram({"info", copy, "--json"}).out);
-  EXPECT_EQ(again["samples"], read["samples"]);
-  EXPECT_EQ(again["reciprocity_error"], read["reciprocity_error"]);
+  EXPECT_EQ(again["bins"], read["bins"]);
+  EXPECT_EQ(again["exchange_error"], read["exchange_error"]);
   EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy, "--max_angle=10"}).status, 0);
   again = json::parse(RunProgram({"info", copy, "--json"}).out);
-  EXPECT_LT(again["samples"]["valid"], read["samples"]["valid"]);
+  EXPECT_LT(again["bins"]["valid"], read["bins"]["valid"]);
   // A model is converted to CSV, too.
   Write(folder / "model.json", kLambertianModel);
   const ProgramResult model = RunProgram(

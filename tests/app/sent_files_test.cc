@@ -28,7 +28,7 @@ class SentFiles : public ::testing::Test {
  protected:
   SentFiles() : home_(folder_ / kUser) {
     std::filesystem::create_directories(home_);
-    Run({"convert", "synth:rubber@12x12x24", "--out=" + measured_});
+    Run({"convert", "synth:rubber@12x12x24", "--missing=0.6", "--out=" + measured_});
   }
 
   static ProgramResult Run(const std::vector<std::string>& arguments, int status = 0) {

@@ -117,7 +117,7 @@ std::string IterationAxis(int most, bool logarithmic) {
 
 // E of each iteration.
 Drawing Convergence(std::span<const StudyRun> runs) {
-  constexpr int kManyTimes = 10;
+  constexpr std::int64_t kManyTimes = 10;
   int most = 1, fewest = std::numeric_limits<int>::max();
   for (const StudyRun& run : runs) {
     if (run.failed()) continue;

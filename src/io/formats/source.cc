@@ -336,6 +336,7 @@ Measurement Source::Parsed(const SourceOptions& options) const {
   const MeasurementFormat& format = FormatOf(bytes, name_, is_table);
   Measurement measurement = format.read(bytes, name_, options);
   measurement.xxh128 = ContentHash(bytes_);
+  if (!options.azimuth_from_mirror) TakeMerlBinsAsTable(&measurement);
   const bool is_rows = format.name == "json";  // of a text table
   NoteUnread(options, is_rows ? "csv" : format.name, &measurement);
   return measurement;

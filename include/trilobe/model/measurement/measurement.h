@@ -94,6 +94,11 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement);
 // (SmoothDarkReadings) and adds a note, if there is such noise.
 void SmoothDarkReadings(int num_threads, Measurement* measurement);
 
+// Makes a table of scattered samples that stand at the centres of the bins of a MerlGrid, most of
+// those up to their largest angle and none twice, as a table that was written as text does; adds a
+// note. No effect where azimuths matter, and on spectra.
+void TakeMerlBinsAsTable(Measurement* measurement);
+
 // Turns phi_o of scattered samples by 180 degrees, for those whose azimuths are counted from the
 // mirror direction.
 void TurnAzimuths(Measurement* scattered);
