@@ -16,8 +16,8 @@ def units(setting):
     for source in setting.every(manifest["every"]):
         fit = fits.fit(setting, source, manifest["flags"].get("solver", "auto"),
                        {key: value for key, value in manifest["flags"].items() if key != "solver"})
-        made += [fit, Unit(f"forms/{source.name}", setting.program(),
-                           ("forms", Product(fit, "model.json"), source.path,
+        made += [fit, Unit(f"forms/{source.name}", setting.program("forms"),
+                           (Product(fit, "model.json"), source.path,
                             f"--forms={','.join(manifest['forms'])}", f"--out={FOLDER}",
                             *fits.words(setting.reading(source))), "forms.json",
                            labels={"material": source.name, "run": "forms"})]

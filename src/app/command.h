@@ -35,7 +35,6 @@ inline constexpr int kSomeFailed = 3;
 Command CompareCommand();
 Command ConvertCommand();
 Command FitCommand();
-Command FormsCommand();
 Command InfoCommand();
 Command MaterialsCommand();
 Command PlanCommand();

@@ -143,8 +143,7 @@ TEST(OwnFiles, OfPagesAndPictures) {
   const TemporaryFolder folder;
   const std::string fit = folder / "fit", model = fit + "/model.json";
   Succeed(Fit(fit));
-  ExpectAllRefused({{"forms", model, kSource, "--forms=retro", "--out=OUT"},
-                    {"plot", model, kSource, "--trace=" + fit + "/trace.csv", "--out=OUT"},
+  ExpectAllRefused({{"plot", model, kSource, "--trace=" + fit + "/trace.csv", "--out=OUT"},
                     {"info", kSource, "--out=OUT"},
                     {"view", model, kSource, "--out=OUT/page.html"},
                     {"score", model, kSource, "--out=OUT/seen.png"}},

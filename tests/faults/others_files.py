@@ -45,7 +45,6 @@ def writing_commands(harness):
         "many": (["fit", source, "synth:rubber@12x12x24", *QUICK], "out"),
         "scene": (["fit", f"--scene={harness.scene}", *QUICK, cache], "out"),
         "study": (["study", source, "--solvers=awls,lm", "--runs=1", "--max_iterations=2", "--nodiagnose"], "out"),
-        "forms": (["forms", model, source, "--forms=retro"], "out"),
         "plot": (["plot", model, source, trace], "out"),
         "info": (["info", source], "out"),
         "score": (["score", model, source], "out/seen.png"),

@@ -46,17 +46,15 @@ std::string StringIn(const JsonValue& json, std::string_view member) {
 bool IsOwnObject(const JsonValue& json, std::string_view bytes) {
   if (json.type() != JsonValue::Type::kObject) return false;
   const std::string format = StringIn(json, "format");
-  constexpr std::array kFormats = {"trilobe-model", "trilobe-terms", "trilobe-report",
-                                   kPlanFormat,     kFormsFormat,    kStudyFormat};
+  constexpr std::array kFormats = {"trilobe-model", "trilobe-report", kPlanFormat, kStudyFormat};
   if (std::ranges::find(kFormats, format) != kFormats.end()) return true;
   if (format == "blender-principled") return Has(StringIn(json, "made"), "found by trilobe ");
   if (!format.empty()) return false;
   const auto has = [&](std::string_view member) { return json.Find(member) != nullptr; };
   if (has("metadata")) return Has(bytes, kOwnMark);  // of OpenMATERIAL
-  // Reports, plans and comparisons of forms by earlier versions.
+  // Reports and plans by earlier versions.
   return (has("run") && has("files") && (has("key") || has("unfinished"))) ||
-         (has("scene") && has("materials") && has("threads")) ||
-         (has("model") && has("source") && has("forms"));
+         (has("scene") && has("materials") && has("threads"));
 }
 
 bool IsOwnJson(std::string_view bytes) {

@@ -13,7 +13,6 @@ inline constexpr std::string_view kOwnMark = "written by Trilobe";
 
 // "format" of JSON files that are no models, nor reports.
 inline constexpr const char* kPlanFormat = "trilobe-plan";
-inline constexpr const char* kFormsFormat = "trilobe-forms";
 inline constexpr const char* kStudyFormat = "trilobe-study";
 
 // A whole .png, .svg or .pdf picture with the mark of this program in it.

@@ -38,7 +38,6 @@
   X(Pab)                           \
   X(OpenMaterial)                  \
   X(JsonTable)                     \
-  X(Terms)                         \
   X(Csv)                           \
   X(LightTools)                    \
   X(Zemax)                         \

@@ -226,7 +226,6 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       {"pab", "#sample_name \"x\"\n#intheta 30\n"},
       {"openmaterial", "{\"brdf\": {\"lookupTable\": []}}"},
       {"json", "{\"theta_i\": [10],\n\"theta_o\": [20],\n\"f\": [0.5]}"},
-      {"terms", "{\"format\": \"trilobe-terms\"}"},
       {"csv", kCsv}};
   ASSERT_EQ(MeasurementFormats().size(), begins.size());
   for (const MeasurementFormat& format : MeasurementFormats()) {

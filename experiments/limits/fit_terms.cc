@@ -2,10 +2,10 @@
 #include <limits>
 #include <utility>
 
+#include "experiments/limits/term_problem.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/nonnegative_step.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/general/term_problem.h"
 
 namespace trilobe {
 namespace {

@@ -1,6 +1,7 @@
-#ifndef TRILOBE_MODEL_TERMS_TERM_MODEL_H_
-#define TRILOBE_MODEL_TERMS_TERM_MODEL_H_
+#ifndef TRILOBE_EXPERIMENTS_LIMITS_TERM_MODEL_H_
+#define TRILOBE_EXPERIMENTS_LIMITS_TERM_MODEL_H_
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -184,10 +185,15 @@ ReadValue ValueOfRead(Site site, double in, double out, double correlation);
 void UnclampedValues(const TermModel& model, const TermReader& reader, const TermReader::At& at,
                      std::span<double> rho);
 
+// The model's BRDF [1/sr] in RGB, of directions above the surface: of channels that are wavelengths
+// [nm], the colour, of which channels below 0 are 0; without wavelengths they are R, G and B.
+std::function<Rgb(const HalfDiffAngles&)> RgbOf(const TermModel& model,
+                                                const std::vector<double>& wavelengths);
+
 // BRDF [1/sr] of each channel; 0 if a direction is below the surface. Throws Error for NaN.
 // [channels]
 std::vector<double> Evaluate(const TermModel& model, const DirectionPair& directions);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_MODEL_TERMS_TERM_MODEL_H_
+#endif  // TRILOBE_EXPERIMENTS_LIMITS_TERM_MODEL_H_

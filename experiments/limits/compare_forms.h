@@ -1,14 +1,14 @@
-#ifndef TRILOBE_FIT_FORMS_COMPARE_FORMS_H_
-#define TRILOBE_FIT_FORMS_COMPARE_FORMS_H_
+#ifndef TRILOBE_EXPERIMENTS_LIMITS_COMPARE_FORMS_H_
+#define TRILOBE_EXPERIMENTS_LIMITS_COMPARE_FORMS_H_
 
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "experiments/limits/term_model.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/model/terms/term_model.h"
 
 namespace trilobe {
 
@@ -42,4 +42,4 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FIT_FORMS_COMPARE_FORMS_H_
+#endif  // TRILOBE_EXPERIMENTS_LIMITS_COMPARE_FORMS_H_

@@ -1,10 +1,10 @@
-#ifndef TRILOBE_MODEL_TERMS_TERM_FORMS_H_
-#define TRILOBE_MODEL_TERMS_TERM_FORMS_H_
+#ifndef TRILOBE_EXPERIMENTS_LIMITS_TERM_FORMS_H_
+#define TRILOBE_EXPERIMENTS_LIMITS_TERM_FORMS_H_
 
 #include <string>
 #include <vector>
 
-#include "trilobe/model/terms/term_model.h"
+#include "experiments/limits/term_model.h"
 
 namespace trilobe {
 
@@ -23,4 +23,4 @@ const std::vector<TermForm>& TermForms();
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_MODEL_TERMS_TERM_FORMS_H_
+#endif  // TRILOBE_EXPERIMENTS_LIMITS_TERM_FORMS_H_

@@ -1,9 +1,11 @@
-#include "trilobe/model/terms/term_model.h"
+#include "experiments/limits/term_model.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
+#include "model/spectral/spectral_color.h"
 #include "model/splined_cosine.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/catmull_rom.h"
@@ -276,6 +278,24 @@ std::vector<double> Evaluate(const TermModel& model, const DirectionPair& direct
   UnclampedValues(model, reader, reader.StencilsAt(ToHalfDiff(directions)), rho);
   for (double& value : rho) value = std::max(value, 0.0);
   return rho;
+}
+
+std::function<Rgb(const HalfDiffAngles&)> RgbOf(const TermModel& model,
+                                                const std::vector<double>& wavelengths) {
+  const auto shared = std::make_shared<const TermModel>(model);
+  const auto reader = std::make_shared<const TermReader>(model.spec());
+  std::shared_ptr<const SpectralColor> color;
+  if (!wavelengths.empty()) {
+    color = std::make_shared<const SpectralColor>(
+        SpectralColor::OfBands(wavelengths, "a model of terms"));
+  }
+  return [shared, reader, color](const HalfDiffAngles& angles) -> Rgb {
+    std::vector<double> rho(shared->spec().channels);
+    UnclampedValues(*shared, *reader, reader->StencilsAt(angles), rho);
+    if (color == nullptr) return AtLeastZero({rho[0], rho[1], rho[2]});
+    for (double& value : rho) value = std::max(value, 0.0);
+    return AtLeastZero((*color)(rho));
+  };
 }
 
 }  // namespace trilobe

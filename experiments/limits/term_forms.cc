@@ -1,4 +1,4 @@
-#include "trilobe/model/terms/term_forms.h"
+#include "experiments/limits/term_forms.h"
 
 #include <algorithm>
 #include <cmath>

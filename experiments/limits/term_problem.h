@@ -1,14 +1,14 @@
-#ifndef TRILOBE_SOLVERS_GENERAL_TERM_PROBLEM_H_
-#define TRILOBE_SOLVERS_GENERAL_TERM_PROBLEM_H_
+#ifndef TRILOBE_EXPERIMENTS_LIMITS_TERM_PROBLEM_H_
+#define TRILOBE_EXPERIMENTS_LIMITS_TERM_PROBLEM_H_
 
 #include <functional>
 #include <span>
 #include <vector>
 
+#include "experiments/limits/term_model.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/quadratic_model.h"
-#include "trilobe/model/terms/term_model.h"
 
 namespace trilobe {
 
@@ -70,4 +70,4 @@ TermFit FitTerms(const TermProblem& problem, const TermModel& start,
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_GENERAL_TERM_PROBLEM_H_
+#endif  // TRILOBE_EXPERIMENTS_LIMITS_TERM_PROBLEM_H_

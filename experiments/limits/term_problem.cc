@@ -1,4 +1,4 @@
-#include "trilobe/solvers/general/term_problem.h"
+#include "experiments/limits/term_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/general/term_problem.h"
+#include "experiments/limits/term_problem.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/limits/term_forms.h"
 #include "tests/model/spectral/spectral_materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/terms/term_forms.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -1,4 +1,4 @@
-#include "trilobe/model/terms/term_model.h"
+#include "experiments/limits/term_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "experiments/limits/term_forms.h"
 #include "tests/model/spectral/spectral_materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/terms/term_forms.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/fit/forms/compare_forms.h"
+#include "experiments/limits/compare_forms.h"
 
 #include <algorithm>
 #include <optional>
@@ -6,13 +6,13 @@
 
 #include "core/base/names.h"
 #include "core/system/process.h"
+#include "experiments/limits/term_forms.h"
+#include "experiments/limits/term_problem.h"
 #include "fit/held_out.h"
 #include "fit/prune/thinned_objective.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/model/terms/term_forms.h"
-#include "trilobe/solvers/general/term_problem.h"
 
 namespace trilobe {
 namespace {
