@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from trilobe._brdf import Brdf, make_folder, printable, text_of_path, write_text
 from trilobe._core import Error
 from trilobe._measurement import Measurement, fits, measurement_of
-
-if TYPE_CHECKING:
-    from trilobe._uncertainty import Uncertainty
+from trilobe._objective import Problem
+from trilobe._uncertainty import Uncertainty, uncertainty
 
 _FOUND = {
     "converged": "an iteration changed E by less than the tolerance",
@@ -42,15 +41,6 @@ class Record(NamedTuple):
     optimality: float
     processor_seconds: float
     objective_with_prior: float
-
-
-class Problem(NamedTuple):
-    """The data and weights of the E that a fit minimised."""
-
-    measurement: Measurement | None
-    weighting: str = "appearance"
-    weights: NDArray[np.float64] | None = None
-    threads: int = 0
 
 
 class Result:
@@ -153,8 +143,6 @@ class Result:
         Raises:
             Error: for more than 4000 parameters, or if there is no measurement.
         """
-        from trilobe._uncertainty import uncertainty
-
         problem = self._problem
         if measurement is not None:
             problem = Problem(measurement_of(measurement), *(problem or Problem(None))[1:])

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from trilobe._brdf import Brdf
 from trilobe._core import Error
 from trilobe._measurement import half_angles
-from trilobe._objective import Objective
-from trilobe._result import Problem
+from trilobe._objective import Objective, Problem
 from trilobe._table import Table
 
 _MOST = 4000  # most parameters, as matrices of them are stored
