@@ -12,16 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe import _core
-from trilobe._arrays import (
-    Floats,
-    as_array,
-    check_width,
-    common_shape,
-    of_one_precision,
-    rows,
-)
 from trilobe._core import Error
-from trilobe._table import Table
+from trilobe._model.arrays import Floats, as_array, check_width, common_shape, of_one_precision, rows
+from trilobe._model.table import Table
 
 CHANNELS = ("red", "green", "blue")
 _OTHER_FORMATS = (

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from trilobe._brdf import Brdf, model_of, text_of_path
 from trilobe._core import Error
-from trilobe._measurement import Measurement, fits, measurement_of
-from trilobe._objective import Problem
-from trilobe._options import Form, InitName, SolverName, SolverOptions, Weights, form_options, weights_of
-from trilobe._result import Result
-from trilobe._running import Callback, Stop, run
+from trilobe._fitting.measurement import Measurement, fits, measurement_of
+from trilobe._fitting.objective import Problem
+from trilobe._fitting.options import Form, InitName, SolverName, SolverOptions, Weights, form_options, weights_of
+from trilobe._fitting.result import Result
+from trilobe._fitting.running import Callback, Stop, run
+from trilobe._model.brdf import Brdf, model_of, text_of_path
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -209,7 +209,7 @@ def fit_many(
     Returns:
         The rows of fits.csv, numbers as floats: a table for pandas.DataFrame.
     """
-    from trilobe._batch import run
+    from trilobe._fitting.batch import run
 
     return run([text_of_path(source) for source in _listed(sources)], text_of_path(out), workers, program, flags)
 

@@ -10,11 +10,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import Brdf, make_folder, printable, text_of_path, write_text
 from trilobe._core import Error
-from trilobe._measurement import Measurement, fits, measurement_of
-from trilobe._objective import Problem
-from trilobe._uncertainty import Uncertainty, uncertainty
+from trilobe._fitting.measurement import Measurement, fits, measurement_of
+from trilobe._fitting.objective import Problem
+from trilobe._fitting.uncertainty import Uncertainty, uncertainty
+from trilobe._model.brdf import Brdf, make_folder, printable, text_of_path, write_text
 
 _FOUND = {
     "converged": "an iteration changed E by less than the tolerance",

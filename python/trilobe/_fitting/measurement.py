@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._arrays import as_array
-from trilobe._brdf import CHANNELS, Brdf, load, text_of_path
 from trilobe._core import Error
+from trilobe._model.arrays import as_array
+from trilobe._model.brdf import CHANNELS, Brdf, load, text_of_path
 
 
 def fits() -> Any:
@@ -21,7 +21,7 @@ def fits() -> Any:
     try:
         from trilobe import _fit
     except ImportError as error:
-        here = Path(__file__).parent
+        here = Path(__file__).parents[1]
         if any(here.glob("_fit.*.so")):
             raise Error(
                 f"what fits cannot be loaded ({error}); install the packages of the group run in dependencies.txt"

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, model_of
 from trilobe._core import Error
-from trilobe._measurement import Measurement, fits, measurement_of
-from trilobe._options import Form, Weights, form_options, weights_of
+from trilobe._fitting.measurement import Measurement, fits, measurement_of
+from trilobe._fitting.options import Form, Weights, form_options, weights_of
+from trilobe._model.arrays import as_array
+from trilobe._model.brdf import Brdf, model_of
 
 Vector = NDArray[np.float64]
 
