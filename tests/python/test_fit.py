@@ -114,7 +114,7 @@ def test_arrays_are_counted_like_a_file():
 
 
 def test_read_has_the_options_of_the_program():
-    flags = trilobe._fitting.measurement.fits().source_options()
+    flags = trilobe._fitting.extension.fits().source_options()
     keywords = {"data_seed" if name == "seed" else name: parameter.default
                 for name, parameter in inspect.signature(trilobe.read).parameters.items()
                 if name not in ("source", "threads")}

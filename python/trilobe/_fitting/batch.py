@@ -10,7 +10,7 @@ import sys
 from typing import Any
 
 from trilobe._core import Error
-from trilobe._model.brdf import text_of_path
+from trilobe._model.files import text_of_path
 
 
 def find_program(given: Any) -> str:

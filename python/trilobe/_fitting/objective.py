@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe._core import Error
-from trilobe._fitting.measurement import Measurement, fits, measurement_of
+from trilobe._fitting.extension import fits
+from trilobe._fitting.measurement import Measurement, measurement_of
 from trilobe._fitting.options import Form, Weights, form_options, weights_of
 from trilobe._model.arrays import as_array
 from trilobe._model.brdf import Brdf, model_of

@@ -11,7 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._fitting.measurement import Measurement, fits
+from trilobe._fitting.extension import fits
+from trilobe._fitting.measurement import Measurement
 from trilobe._fitting.result import Record
 from trilobe._model.brdf import Brdf
 

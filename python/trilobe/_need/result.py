@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._model.brdf import write_text
+from trilobe._model.files import write_text
 from trilobe._need.page import page, totals
 
 

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trilobe._core import Error
+from trilobe._fitting.extension import fits
 from trilobe._fitting.fit import fit
-from trilobe._fitting.measurement import Measurement, fits
+from trilobe._fitting.measurement import Measurement
 from trilobe._model.brdf import Brdf
 from trilobe._texels.texels import lobes_of
 

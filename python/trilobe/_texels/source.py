@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from trilobe._core import Error
 from trilobe._model.arrays import as_array
-from trilobe._model.brdf import printable, text_of_path
+from trilobe._model.files import printable, text_of_path
 
 _TILE = 1 << 22  # numbers in a tile, unless a row has more
 

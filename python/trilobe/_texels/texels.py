@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from trilobe._core import Error
 from trilobe._model.arrays import Floats, check_width, of_one_precision
-from trilobe._model.brdf import Brdf, load, make_folder, printable, text_of_path, write_text
+from trilobe._model.brdf import Brdf, load
+from trilobe._model.files import make_folder, printable, text_of_path, write_text
 from trilobe._texels import exr
 
 _FORMAT = {"format": "trilobe-texels", "version": 1}
