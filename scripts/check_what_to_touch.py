@@ -147,8 +147,8 @@ def option(tree):
       Option<"made_up", &Options::made_up>({.help = "halve all values", .changes_values = true}),
 """)
     tree.after("src/io/formats/source.cc", r'apply\("scale", options\.scale', " * (options.made_up ? 0.5 : 1)")
-    tree.after("python/trilobe/_measurement.py", r"    scale: float = 1,\n", "    made_up: bool = False,\n")
-    tree.after("python/trilobe/_measurement.py", r"        scale=scale,\n", "        made_up=made_up,\n")
+    tree.after("python/trilobe/_fitting/measurement.py", r"    scale: float = 1,\n", "    made_up: bool = False,\n")
+    tree.after("python/trilobe/_fitting/measurement.py", r"        scale=scale,\n", "        made_up=made_up,\n")
 
 
 ADDITIONS = {"a subcommand": subcommand, "an option of a measurement": option, "a solver": solver, "a format of measurements": measurement_format,

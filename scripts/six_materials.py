@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 mi.set_variant("llvm_ad_rgb")
 import trilobe.mitsuba  # noqa: E402, F401
-from trilobe._need_result import shown  # noqa: E402
+from trilobe._need.result import shown  # noqa: E402
 
 WIDTH, HEIGHT, LABEL = 960, 200, 28
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"

@@ -14,10 +14,8 @@ is a BSDF for Mitsuba 3; `trilobe.torch` evaluates in PyTorch.
 import importlib
 from typing import Any
 
-from trilobe._brdf import Brdf, Sample, load, materials
 from trilobe._core import Error
-from trilobe._fit_texels import fit_texels
-from trilobe._fitting import (
+from trilobe._fitting.fit import (
     LobeMatch,
     Solver,
     fit,
@@ -29,12 +27,14 @@ from trilobe._fitting import (
     synthetic_materials,
     weightings,
 )
-from trilobe._measurement import Measurement, convert, read
-from trilobe._objective import Objective
-from trilobe._result import Record, Result
-from trilobe._table import Table
-from trilobe._texels import Texels, load_texels
-from trilobe._uncertainty import Uncertainty
+from trilobe._fitting.measurement import Measurement, convert, read
+from trilobe._fitting.objective import Objective
+from trilobe._fitting.result import Record, Result
+from trilobe._fitting.uncertainty import Uncertainty
+from trilobe._model.brdf import Brdf, Sample, load, materials
+from trilobe._model.table import Table
+from trilobe._texels.fit import fit_texels
+from trilobe._texels.texels import Texels, load_texels
 
 __all__ = [
     "Brdf",

@@ -31,23 +31,23 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._brdf import Brdf, load, model_of
 from trilobe._core import Error
-from trilobe._measurement import completed, is_model, read
+from trilobe._fitting.measurement import completed, is_model, read
+from trilobe._model.brdf import Brdf, load, model_of
 
 try:
-    from trilobe._renderer import dr, mi
+    from trilobe._mitsuba.renderer import dr, mi
 except ImportError:
     raise ImportError("trilobe.mitsuba needs Mitsuba 3: pip install mitsuba") from None
 
 if tuple(int(part) for part in mi.__version__.split(".")[:2]) < (3, 6):
     raise ImportError(f"trilobe.mitsuba needs Mitsuba 3.6 or newer, not {mi.__version__}: pip install -U mitsuba")
 
-from trilobe._mitsuba_albedo import Albedo
-from trilobe._mitsuba_measured import MeasuredTable
-from trilobe._mitsuba_sampling import Sampling
-from trilobe._mitsuba_spectra import Upsampling
-from trilobe._mitsuba_tables import Tables
+from trilobe._mitsuba.albedo import Albedo
+from trilobe._mitsuba.measured import MeasuredTable
+from trilobe._mitsuba.sampling import Sampling
+from trilobe._mitsuba.tables import Tables
+from trilobe._mitsuba.upsampling import Upsampling
 
 __all__ = ["bsdf"]
 
@@ -76,7 +76,7 @@ def _brdf_of(props: Any) -> Brdf:
 
 def fit_to_help(measurement: Any) -> Brdf:
     """The model by whose help a measurement is a function of all directions, as `trilobe convert` fits it."""
-    from trilobe._fitting import fit
+    from trilobe._fitting.fit import fit
 
     return fit(measurement, max_iterations=4, match_reflectance=False, progress=False).model
 

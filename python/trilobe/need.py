@@ -19,14 +19,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._batch import find_program
-from trilobe._brdf import Brdf, load, write_text
 from trilobe._core import Error
-from trilobe._fitting import fit
-from trilobe._measurement import Measurement, is_model, read
-from trilobe._need_page import left_text
-from trilobe._need_plan import Tell, plan_of
-from trilobe._need_result import Picture, Result
+from trilobe._fitting.batch import find_program
+from trilobe._fitting.fit import fit
+from trilobe._fitting.measurement import Measurement, is_model, read
+from trilobe._model.brdf import Brdf, load
+from trilobe._model.files import write_text
+from trilobe._need.page import left_text
+from trilobe._need.plan import Tell, plan_of
+from trilobe._need.result import Picture, Result
 
 _MERL = (90, 90, 180)
 _COVERAGE = 0.999  # share of reads to cover; the directions of the rest are not used
@@ -127,7 +128,7 @@ class SceneFile:
         return name
 
     def _parsed(self) -> Any:
-        from trilobe._renderer import mi
+        from trilobe._mitsuba.renderer import mi
 
         config = mi.parser.ParserConfig(mi.variant())
         config.merge_equivalent = config.merge_meshes = False
@@ -137,7 +138,7 @@ class SceneFile:
 
     def load(self, replaced: dict[str, dict[str, str]]) -> Any:
         """The scene, with other BSDFs for some materials: their properties, and `type`."""
-        from trilobe._renderer import mi
+        from trilobe._mitsuba.renderer import mi
 
         state = self._parsed()
         for number, (name, _, k) in enumerate(self._named):
@@ -155,7 +156,7 @@ class SceneFile:
 
     def sides(self, scene: Any) -> list[tuple[Any, int, int]]:
         """BSDFs of shapes that are our materials, with their numbers in front and behind."""
-        from trilobe._renderer import mi
+        from trilobe._mitsuba.renderer import mi
 
         number = {material.name: k for k, material in enumerate(self.materials)}
         own = {f"trilobe-need {k}": number[name] for k, (name, _, _) in enumerate(self._named)}
@@ -237,7 +238,7 @@ def _write_scene(
 
 
 def _render(scene: Any, spp: int) -> Picture:
-    from trilobe._renderer import dr, mi
+    from trilobe._mitsuba.renderer import dr, mi
 
     dr.eval(mi.render(scene, spp=1))  # compiles
     begin = time.perf_counter()
@@ -291,7 +292,7 @@ def need(path: Path, out: Path, options: Options, tell: Tell = print) -> dict[st
 
 def _count(file: SceneFile, out: Path, options: Options, result: Result, tell: Tell) -> list[Any]:
     """Counts what each material is read for."""
-    from trilobe._need_count import Counter
+    from trilobe._need.count import Counter
 
     result.tell("counting which directions are read")
     scene = file.load({material.name: _bsdf(material, "measured", out) for material in file.materials})
@@ -398,7 +399,7 @@ def _set_variant(variant: str) -> None:
     try:
         import flip_evaluator  # noqa: F401
 
-        from trilobe._renderer import mi
+        from trilobe._mitsuba.renderer import mi
     except ImportError as error:
         raise Error(f"trilobe-need needs {error.name}: pip install 'trilobe[need]'") from None
     if not hasattr(mi, "parser"):

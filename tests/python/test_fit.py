@@ -114,7 +114,7 @@ def test_arrays_are_counted_like_a_file():
 
 
 def test_read_has_the_options_of_the_program():
-    flags = trilobe._measurement.fits().source_options()
+    flags = trilobe._fitting.extension.fits().source_options()
     keywords = {"data_seed" if name == "seed" else name: parameter.default
                 for name, parameter in inspect.signature(trilobe.read).parameters.items()
                 if name not in ("source", "threads")}
@@ -332,7 +332,7 @@ def test_fits_many(tmp_path, monkeypatch):
 
 
 def test_names_of_a_batch_are_no_formulas():
-    from trilobe._batch import _cell
+    from trilobe._fitting.batch import _cell
 
     for text, value in {"'=1+1": "=1+1", "''=": "'=", "'-3": "-3", "-3": -3.0, "it's": "it's", "'a": "'a"}.items():
         assert _cell(text) == value

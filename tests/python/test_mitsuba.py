@@ -17,7 +17,7 @@ mi = pytest.importorskip("mitsuba")
 import drjit as dr  # noqa: E402
 
 import trilobe.mitsuba as plugin  # noqa: E402
-from trilobe._measurement import completed  # noqa: E402
+from trilobe._fitting.measurement import completed  # noqa: E402
 
 BACKEND = os.environ.get("TRILOBE_TEST_BACKEND", "llvm")
 COMPILED = f"{BACKEND}_ad_rgb"

@@ -17,8 +17,8 @@ pytest.importorskip("flip_evaluator")
 import drjit as dr  # noqa: E402
 
 from trilobe import need  # noqa: E402
-from trilobe._need_page import page, totals  # noqa: E402
-from trilobe._need_plan import plan_of  # noqa: E402
+from trilobe._need.page import page, totals  # noqa: E402
+from trilobe._need.plan import plan_of  # noqa: E402
 
 NO_LLVM = "no LLVM; install libllvm19, set DRJIT_LIBLLVM_PATH"
 # Without a path Dr.Jit takes any LLVM, and Debian's 14 to 16 end the process.
@@ -31,7 +31,7 @@ except Exception:
     pytest.skip(NO_LLVM, allow_module_level=True)
 
 import trilobe.mitsuba  # noqa: E402, F401
-from trilobe._need_count import Counter  # noqa: E402
+from trilobe._need.count import Counter  # noqa: E402
 
 # A sphere under a lamp far up to the right, and a mirror of it; the camera looks down.
 SCENE = """<scene version="3.0.0">

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import trilobe
-from trilobe import _texel_source
+from trilobe._texels import source
 
 from models import directions, isotropic
 
@@ -149,7 +149,7 @@ class Slices:
 @pytest.fixture
 def tiles(monkeypatch):
     """Tiles of three rows."""
-    monkeypatch.setattr(_texel_source, "_TILE", THREE_ROWS)
+    monkeypatch.setattr(source, "_TILE", THREE_ROWS)
 
 
 def test_a_folder_goes_on(pair, tiles, tmp_path):
@@ -180,7 +180,7 @@ def test_a_folder_goes_on(pair, tiles, tmp_path):
 
 
 def run_shard(pair, rho, k, out):
-    _texel_source._TILE = THREE_ROWS
+    source._TILE = THREE_ROWS
     assert trilobe.fit_texels(pair, rho, 1, out=out, shard=(k, 3), **SOON, **QUIET) is None
 
 

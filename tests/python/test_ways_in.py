@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import trilobe
-from trilobe import _options
+from trilobe._fitting.options import InitName, SolverName, SolverOptions
 
 from models import directions, isotropic
 
@@ -123,9 +123,9 @@ def test_has_the_names_of_scipy(plastic, fitted):
 
 def test_types_name_all_solvers_and_options():
     solvers = trilobe.solvers()
-    assert typing.get_args(_options.SolverName) == tuple(solver.name for solver in solvers)
-    assert typing.get_args(_options.InitName) == tuple(trilobe.initial_models())
-    hints = typing.get_type_hints(_options.SolverOptions)
+    assert typing.get_args(SolverName) == tuple(solver.name for solver in solvers)
+    assert typing.get_args(InitName) == tuple(trilobe.initial_models())
+    hints = typing.get_type_hints(SolverOptions)
     taken = {name: value for solver in solvers for name, (value, _) in solver.options.items()}
     assert set(hints) == set(taken)
     for name, value in taken.items():

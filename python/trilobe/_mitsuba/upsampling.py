@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._renderer import dr, mi
-from trilobe._spectra import BEGIN, STEP, basis
+from trilobe._mitsuba.primaries import BEGIN, STEP, basis
+from trilobe._mitsuba.renderer import dr, mi
 
 
 class Upsampling:

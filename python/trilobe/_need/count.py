@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._mitsuba_measured import half_difference
-from trilobe._renderer import dr, mi
+from trilobe._mitsuba.measured import half_difference
+from trilobe._mitsuba.renderer import dr, mi
 
 THETA_BINS = 90
 _PATHS_AT_ONCE = 1 << 22

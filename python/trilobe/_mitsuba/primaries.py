@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._renderer import dr, mi
+from trilobe._mitsuba.renderer import dr, mi
 
 BEGIN, END, STEP = 360.0, 830.0, 10.0
 """Wavelengths at which they are tabulated [nm]."""

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import printable
 from trilobe._core import Error
+from trilobe._model.files import printable
 
 _MAGIC = b"\x76\x2f\x31\x01\x02\x00\x00\x00"
 _CHANNELS = {1: "Y", 3: "BGR"}  # in the order of a file, by how many there are

@@ -5,31 +5,16 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._arrays import as_array
-from trilobe._brdf import CHANNELS, Brdf, load, text_of_path
 from trilobe._core import Error
-
-
-def fits() -> Any:
-    """The module that fits; an Error that says why not, where there is none."""
-    try:
-        from trilobe import _fit
-    except ImportError as error:
-        here = Path(__file__).parent
-        if any(here.glob("_fit.*.so")):
-            raise Error(
-                f"what fits cannot be loaded ({error}); install the packages of the group run in dependencies.txt"
-            ) from None
-        raise Error(
-            "this package only evaluates models; pip install trilobe adds what reads and fits measurements"
-        ) from None
-    return _fit
+from trilobe._fitting.extension import fits
+from trilobe._model.arrays import as_array
+from trilobe._model.brdf import CHANNELS, Brdf, load
+from trilobe._model.files import text_of_path
 
 
 class Measurement:

@@ -9,8 +9,8 @@ import subprocess
 import sys
 from typing import Any
 
-from trilobe._brdf import text_of_path
 from trilobe._core import Error
+from trilobe._model.files import text_of_path
 
 
 def find_program(given: Any) -> str:

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import write_text
-from trilobe._need_page import page, totals
+from trilobe._model.files import write_text
+from trilobe._need.page import page, totals
 
 
 class Picture(NamedTuple):
@@ -55,7 +55,7 @@ def difference(reference: NDArray[np.float64], test: NDArray[np.float64], white:
 
 
 def _write_png(path: Path, srgb: NDArray[np.float32]) -> None:
-    from trilobe._renderer import mi
+    from trilobe._mitsuba.renderer import mi
 
     bytes_of = (np.clip(srgb, 0, 1) * 255 + 0.5).astype(np.uint8)
     mi.Bitmap(np.ascontiguousarray(bytes_of)).write(str(path))

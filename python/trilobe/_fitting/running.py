@@ -11,9 +11,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import Brdf
-from trilobe._measurement import Measurement, fits
-from trilobe._result import Record
+from trilobe._fitting.extension import fits
+from trilobe._fitting.measurement import Measurement
+from trilobe._fitting.result import Record
+from trilobe._model.brdf import Brdf
 
 _POLL_SECONDS = 0.05
 

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import Brdf
 from trilobe._core import Error
-from trilobe._measurement import half_angles
-from trilobe._objective import Objective
-from trilobe._result import Problem
-from trilobe._table import Table
+from trilobe._fitting.measurement import half_angles
+from trilobe._fitting.objective import Objective, Problem
+from trilobe._model.brdf import Brdf
+from trilobe._model.table import Table
 
 _MOST = 4000  # most parameters, as matrices of them are stored
 _RESOLVED = 1e-12  # share of the largest eigenvalue, below which data say nothing

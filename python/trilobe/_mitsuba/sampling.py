@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._brdf import Brdf
-from trilobe._mitsuba_tables import turns
-from trilobe._renderer import dr, mi
+from trilobe._mitsuba.renderer import dr, mi
+from trilobe._mitsuba.tables import turns
+from trilobe._model.brdf import Brdf
 
 # Share of half vectors drawn by the cosine, lest something between the nodes be missed.
 _COSINE_SHARE = 0.01

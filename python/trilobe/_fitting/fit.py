@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import json
 import os
-import re
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, model_of, text_of_path
 from trilobe._core import Error
-from trilobe._measurement import Measurement, fits, measurement_of
-from trilobe._options import Form, InitName, SolverName, SolverOptions
-from trilobe._result import Problem, Result
-from trilobe._running import Callback, Stop, run
+from trilobe._fitting.extension import fits
+from trilobe._fitting.measurement import Measurement, measurement_of
+from trilobe._fitting.objective import Problem
+from trilobe._fitting.options import Form, InitName, SolverName, SolverOptions, Weights, form_options, weights_of
+from trilobe._fitting.result import Result
+from trilobe._fitting.running import Callback, Stop, run
+from trilobe._model.brdf import Brdf, model_of
+from trilobe._model.files import text_of_path
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-Weights = Union[ArrayLike, Callable[[Any, Any, Any], ArrayLike]]
 
 
 def fit(
@@ -127,59 +125,6 @@ def fit(
     return Result(outcome, Problem(data, weighting, by_sample, threads))
 
 
-def weights_of(weights: Weights | None, data: Measurement) -> NDArray[np.float64] | None:
-    """The weights of the valid samples. Raises Error."""
-    if weights is None:
-        return None
-    given = weights(data.wi, data.wo, data.rho) if callable(weights) else weights
-    array = as_array(given, "weights").astype(np.float64)
-    if array.shape != data.valid.shape:
-        raise Error(f"weights have the shape {array.shape}, and must have {data.valid.shape}, one for each row of rho")
-    array = np.ascontiguousarray(array[data.valid])
-    if not (np.isfinite(array) & (array >= 0)).all() or not array.any():
-        raise Error("weights of valid samples must be finite and 0 or more, and one above 0")
-    return array
-
-
-def form_options(
-    model: str,
-    lobes: int | None,
-    stretch: ArrayLike | None,
-    d_nodes: str | None,
-    g_nodes: str | None,
-    f_bins: int | None,
-    nodes: str,
-) -> dict[str, Any]:
-    """The form of a model, as C++ takes it. Raises Error."""
-    pairs: list[list[float]] = []
-    if stretch is not None:
-        array = as_array(stretch, "stretch").astype(np.float64)
-        if array.ndim not in (1, 2) or array.shape[-1] != 2:
-            raise Error("stretch must be (along, across), once or for each lobe")
-        pairs = array.reshape(-1, 2).tolist()
-    if not isinstance(nodes, str) or nodes not in ("given", "held_out"):
-        raise Error(f"unknown nodes {' '.join(repr(nodes).split())[:60]}; known: given, held_out")
-    return {
-        "model": model,
-        "lobes": lobes,
-        "stretch": [tuple(pair) for pair in pairs],
-        "d_nodes": _nodes_of("d_nodes", d_nodes),
-        "g_nodes": _nodes_of("g_nodes", g_nodes),
-        "f_bins": f_bins,
-        "nodes_by_held_out": nodes == "held_out",
-    }
-
-
-def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:
-    if text is None:
-        return None
-    match = re.fullmatch(r"(\d{1,4})(r?)x(\d{1,4})", text) if isinstance(text, str) else None
-    if match is None or (match[2] and name == "g_nodes"):
-        given = " ".join(repr(text).split())[:60]
-        raise Error(f"{name}={given} are no nodes; give theta x phi, as '6x48'")
-    return int(match[1]), bool(match[2]), int(match[3])
-
-
 def score(
     model: Brdf | str | os.PathLike[str],
     measurement: Measurement | str | os.PathLike[str],
@@ -266,7 +211,7 @@ def fit_many(
     Returns:
         The rows of fits.csv, numbers as floats: a table for pandas.DataFrame.
     """
-    from trilobe._batch import run
+    from trilobe._fitting.batch import run
 
     return run([text_of_path(source) for source in _listed(sources)], text_of_path(out), workers, program, flags)
 

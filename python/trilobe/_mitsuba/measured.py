@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._brdf import Brdf
-from trilobe._measurement import Measurement, completed
-from trilobe._mitsuba_tables import Tables, linear, turns
-from trilobe._renderer import dr, mi
+from trilobe._fitting.measurement import Measurement, completed
+from trilobe._mitsuba.renderer import dr, mi
+from trilobe._mitsuba.tables import Tables, linear, turns
+from trilobe._model.brdf import Brdf
 
 
 def half_difference(wi: Any, wo: Any) -> tuple[Any, Any, Any]:

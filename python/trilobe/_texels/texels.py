@@ -11,10 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe import _exr
-from trilobe._arrays import Floats, check_width, of_one_precision
-from trilobe._brdf import Brdf, load, make_folder, printable, text_of_path, write_text
 from trilobe._core import Error
+from trilobe._model.arrays import Floats, check_width, of_one_precision
+from trilobe._model.brdf import Brdf, load
+from trilobe._model.files import make_folder, printable, text_of_path, write_text
+from trilobe._texels import exr
 
 _FORMAT = {"format": "trilobe-texels", "version": 1}
 _ABOUT = "texels.json"
@@ -114,7 +115,7 @@ def load_texels(folder: str | os.PathLike[str]) -> Texels:
     if about is None:
         raise Error(f"{printable(name)} has no {_ABOUT}, and is no folder of texels")
     materials = [load(name / "materials" / f"{k}.json") for k in range(about.materials)]
-    pictures = [_exr.read(name / f"{stem}.exr", *about.size, n) for stem, n in about.pictures()]
+    pictures = [exr.read(name / f"{stem}.exr", *about.size, n) for stem, n in about.pictures()]
     return about.texels(materials, pictures)
 
 
@@ -198,7 +199,7 @@ def write_pictures(folder: Path, about: About, parts: Iterable[Sequence[NDArray[
         raise Error("there is no texel to write")
     height, width = about.size
     try:
-        files = [_exr.Writer(folder / f"{stem}.exr", height, width, n) for stem, n in about.pictures()]
+        files = [exr.Writer(folder / f"{stem}.exr", height, width, n) for stem, n in about.pictures()]
         for part in parts:
             for file, pixels in zip(files, part):
                 file.append(pixels.reshape(-1, width, pixels.shape[-1]))

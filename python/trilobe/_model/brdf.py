@@ -12,16 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe import _core
-from trilobe._arrays import (
-    Floats,
-    as_array,
-    check_width,
-    common_shape,
-    of_one_precision,
-    rows,
-)
 from trilobe._core import Error
-from trilobe._table import Table
+from trilobe._model.arrays import Floats, as_array, check_width, common_shape, of_one_precision, rows
+from trilobe._model.files import printable, text_of_path, write_text
+from trilobe._model.table import Table
 
 CHANNELS = ("red", "green", "blue")
 _OTHER_FORMATS = (
@@ -366,7 +360,7 @@ def load(path: str | os.PathLike[str]) -> Brdf:
     Raises:
         Error: if there is no such file or material, or it is no model.
     """
-    name = _path_of(path)
+    name = Path(text_of_path(path))
     if str(path).startswith("material:"):
         return Brdf.from_json(_core.material_text(text_of_path(path)), text_of_path(path))
     try:
@@ -395,69 +389,6 @@ def model_of(value: Any) -> Brdf:
     if isinstance(value, (str, os.PathLike)):
         return load(value)
     raise Error("the model must be a trilobe.Brdf, the path of a model file, or material:NAME")
-
-
-def text_of_path(path: Any) -> str:
-    """A path as a str; an Error where it is none."""
-    try:
-        text = os.fsdecode(path)
-        text.encode("utf-8")
-    except TypeError:
-        raise Error(f"a path must be a str or a path, not {type(path).__name__}") from None
-    except UnicodeError:
-        raise Error(f"{ascii(path)} is no path that can be written in UTF-8") from None
-    if "\0" in text:
-        raise Error(f"{text!r} is no path: it has a null character")
-    return text
-
-
-def _path_of(path: Any) -> Path:
-    return Path(text_of_path(path))
-
-
-def printable(path: str | Path) -> str:
-    """A path in quotes, on one line."""
-    return repr(str(path).encode("utf-8", "replace").decode("utf-8"))
-
-
-def make_folder(path: Path) -> None:
-    """Makes a folder, and those above it, if need be."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:
-        raise Error(f"cannot make the folder {printable(path)}: {getattr(error, 'strerror', None) or error}") from None
-
-
-def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Writes a file beside its place and moves it there."""
-    try:
-        content = text.encode("utf-8")
-    except ValueError as error:
-        raise Error(f"cannot write {printable(_path_of(path))}: {error}") from None
-    write_bytes(path, content)
-
-
-def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
-    """The same of bytes."""
-    import tempfile  # a third of the time that the package takes to import beyond numpy
-
-    name = _path_of(path)
-    temporary = None
-    try:
-        with tempfile.NamedTemporaryFile(dir=name.parent, prefix=".trilobe-", delete=False) as file:
-            temporary = file.name
-            file.write(content)
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(temporary, 0o666 & ~umask)
-        os.replace(temporary, name)
-    except (OSError, ValueError) as error:
-        if temporary is not None:
-            Path(temporary).unlink(missing_ok=True)
-        reason = getattr(error, "strerror", None) or str(error)
-        if os.path.isdir(name):  # "." is reported as busy
-            reason = "it is a folder; give the name of a file"
-        raise Error(f"cannot write {printable(name)}: {reason}") from None
 
 
 def _count(shape: tuple[int, ...]) -> int:

@@ -5,17 +5,18 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import Brdf, make_folder, printable, text_of_path, write_text
 from trilobe._core import Error
-from trilobe._measurement import Measurement, fits, measurement_of
-
-if TYPE_CHECKING:
-    from trilobe._uncertainty import Uncertainty
+from trilobe._fitting.extension import fits
+from trilobe._fitting.measurement import Measurement, measurement_of
+from trilobe._fitting.objective import Problem
+from trilobe._fitting.uncertainty import Uncertainty, uncertainty
+from trilobe._model.brdf import Brdf
+from trilobe._model.files import make_folder, printable, text_of_path, write_text
 
 _FOUND = {
     "converged": "an iteration changed E by less than the tolerance",
@@ -42,15 +43,6 @@ class Record(NamedTuple):
     optimality: float
     processor_seconds: float
     objective_with_prior: float
-
-
-class Problem(NamedTuple):
-    """The data and weights of the E that a fit minimised."""
-
-    measurement: Measurement | None
-    weighting: str = "appearance"
-    weights: NDArray[np.float64] | None = None
-    threads: int = 0
 
 
 class Result:
@@ -153,8 +145,6 @@ class Result:
         Raises:
             Error: for more than 4000 parameters, or if there is no measurement.
         """
-        from trilobe._uncertainty import uncertainty
-
         problem = self._problem
         if measurement is not None:
             problem = Problem(measurement_of(measurement), *(problem or Problem(None))[1:])

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._brdf import Brdf
-from trilobe._renderer import dr, mi
+from trilobe._mitsuba.renderer import dr, mi
+from trilobe._model.brdf import Brdf
 
 
 class Columns:

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, model_of
 from trilobe._core import Error
-from trilobe._fitting import Weights, form_options, weights_of
-from trilobe._measurement import Measurement, fits, measurement_of
-from trilobe._options import Form
+from trilobe._fitting.extension import fits
+from trilobe._fitting.measurement import Measurement, measurement_of
+from trilobe._fitting.options import Form, Weights, form_options, weights_of
+from trilobe._model.arrays import as_array
+from trilobe._model.brdf import Brdf, model_of
 
 Vector = NDArray[np.float64]
+
+
+class Problem(NamedTuple):
+    """The data and weights of the E that a fit minimised."""
+
+    measurement: Measurement | None
+    weighting: str = "appearance"
+    weights: NDArray[np.float64] | None = None
+    threads: int = 0
 
 
 class Objective:

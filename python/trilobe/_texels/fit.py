@@ -11,13 +11,14 @@ from typing import Any, Union, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, load, make_folder, model_of, printable, text_of_path, write_bytes, write_text
 from trilobe._core import Error
-from trilobe._measurement import fits
-from trilobe._texel_materials import Problem, find
-from trilobe._texel_source import Source, Vector
-from trilobe._texels import About, Texels, load_texels, write_pictures
+from trilobe._fitting.extension import fits
+from trilobe._model.arrays import as_array
+from trilobe._model.brdf import Brdf, load, model_of
+from trilobe._model.files import make_folder, printable, text_of_path, write_bytes, write_text
+from trilobe._texels.materials import Problem, find
+from trilobe._texels.source import Source, Vector
+from trilobe._texels.texels import About, Texels, load_texels, write_pictures
 
 _LOOKED_AT = 4096  # texels in which materials are looked for
 _HASHED = 256  # by which others are told

@@ -1,0 +1,1 @@
+"""Fits of measurements, and what they find: by what fits, or by the program."""

@@ -1,0 +1,1 @@
+"""The parts of `trilobe.mitsuba`, by Dr.Jit."""

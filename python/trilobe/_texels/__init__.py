@@ -1,0 +1,1 @@
+"""Surfaces of a few materials, with strengths a texel: fitted, read and written."""
