@@ -17,9 +17,9 @@
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

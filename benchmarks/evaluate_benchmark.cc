@@ -15,8 +15,8 @@
 
 #include "benchmarks/ggx.h"
 #include "experiments/sampling/ndf_sampler.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/evaluate/bsdf.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/model/bsdf.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

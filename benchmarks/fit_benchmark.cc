@@ -23,9 +23,9 @@
 #include "io/formats/merl_file.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe {

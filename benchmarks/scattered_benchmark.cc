@@ -21,11 +21,11 @@
 #include "model/objective/batch_evaluator.h"
 #include "solvers/awls/sweep.h"
 #include "solvers/sums/scattered_equations.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/folded_samples.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {

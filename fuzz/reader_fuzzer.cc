@@ -25,9 +25,9 @@
 #include "model/measurement/anisotropy.h"
 #include "model/measurement/note_symptoms.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
+#include "trilobe/io/formats/trace_file.h"
 #include "trilobe/model/appearance/environment.h"
 
 namespace trilobe {

@@ -29,7 +29,7 @@ grep 'Building the program: some .* minutes of one core' "$closed/said"
 echo "-- docs/adding-a-solver.md"
 awk '/^```cpp$/ { inside = 1; next } /^```$/ && inside { exit } inside' docs/adding-a-solver.md \
   >src/solvers/compass_search.cc
-sed -i 's/^  X(Auto) .*/&\n  X(CompassSearch) \\/' src/solvers/registry/solvers.cc
+sed -i 's/^  X(Auto) .*/&\n  X(CompassSearch) \\/' src/solvers/starts/solvers.cc
 ./run solvers </dev/null | grep compass_search
 ./run fit synth:plastic@15x15x30 --solver=compass_search --max_iterations=2 --lobes=1 --nodiagnose \
   --out=out/found </dev/null >"$closed/report"

@@ -94,7 +94,7 @@ SolverEntry MadeUpEntry() {
 
 }  // namespace trilobe
 """)
-    tree.after("src/solvers/registry/solvers.cc", r"X\(LmPlain\)", " \\\n  X(MadeUp)")
+    tree.after("src/solvers/starts/solvers.cc", r"X\(LmPlain\)", " \\\n  X(MadeUp)")
 
 
 def measurement_format(tree):

@@ -3,7 +3,7 @@
 // declares trilobe_tables, trilobe_diffuse and trilobe_specular. Directions are unit vectors away from
 // the surface, z along the normal, x where an anisotropic material's azimuths begin; all is 0 below it.
 // Arc functions and sines are polynomials here, since GLSL promises of its own only some 1e-3. The text keeps to
-// what HLSL is made of by exchanging words (src/io/page/shader_file.cc).
+// what HLSL is made of by exchanging words (src/io/pictures/shader_file.cc).
 const float TB_PI = 3.14159265358979;
 const vec3 TB_BLACK = vec3(0.0, 0.0, 0.0);
 const vec4 TB_ONES = vec4(1.0, 1.0, 1.0, 1.0);

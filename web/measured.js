@@ -3,7 +3,7 @@
 
 import {anglesOf, linearPlace} from './model.js';
 
-// The Rice code of src/io/page/page.h.
+// The Rice code of src/io/pictures/page.h.
 export function decodeMeasured(header, text) {
   const bytes = bytesOf(text);
   let at = 0;

@@ -53,7 +53,7 @@ export function thetaOf({size, phis, theta}, factor, entry) {
   return (Math.PI / 2) * (factor === 'D' ? part * part : part);
 }
 
-// Whether a lobe reflects about alike in all directions, as in trilobe/model/lobes/lobe_light.h.
+// Whether a lobe reflects about alike in all directions, as in trilobe/model/objective/lobe_light.h.
 export function isNearlyDiffuse(model, lobe) {
   const flat = (factor, channel, most) => {
     const values = [];

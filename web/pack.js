@@ -1,4 +1,4 @@
-// A model as the shader reads it: the same texture and macros as src/io/page/shader_file.cc makes, but d and s as uniforms,
+// A model as the shader reads it: the same texture and macros as src/io/pictures/shader_file.cc makes, but d and s as uniforms,
 // since they change as the model is edited.
 
 import {FACTORS, bendsOf, isStretched, splineCosines} from './model.js';

@@ -3,7 +3,7 @@
 
 import {probeEnvironment} from './environment.js';
 
-const MOST_COLUMNS = 512;  // the limit of src/io/page/page.cc
+const MOST_COLUMNS = 512;  // the limit of src/io/pictures/page.cc
 
 // {width, height, begin}: `begin` of the pixels.
 function radianceHeader(bytes) {

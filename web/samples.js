@@ -6,7 +6,7 @@ import {DEGREE} from './environment.js';
 import {anglesOf} from './model.js';
 import {bytesOf, directionsOf, tableMeasured} from './measured.js';
 
-const MOST_SAMPLES = 40000;  // that are kept, as in src/io/page/page.h
+const MOST_SAMPLES = 40000;  // that are kept, as in src/io/pictures/page.h
 
 function sampleOf([thetaI, phiI, thetaO, phiO, ...rho]) {
   const direction = (theta, phi) => [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];

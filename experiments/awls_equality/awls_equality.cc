@@ -10,9 +10,9 @@
 #include "experiments/program.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 DEFINE_int32(sweeps, 20, "sweeps to compare");
 DEFINE_int32(stride, 1, "of each (theta_h, theta_d) every stride-th phi_d is kept");

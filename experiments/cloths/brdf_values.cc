@@ -14,11 +14,11 @@
 #include "core/files/little_endian.h"
 #include "experiments/program.h"
 #include "model/appearance/picture_data.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/measurement/node_brdf.h"
 
 DEFINE_bool(interpolated, false,

@@ -20,14 +20,14 @@
 #include "experiments/program.h"
 #include "io/formats/source_option.h"
 #include "model/appearance/picture_data.h"
-#include "model/spectral/spectral_color.h"
+#include "model/spectral_color.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
-#include "trilobe/model/evaluate/read_model.h"
 #include "trilobe/model/objective/weighting.h"
+#include "trilobe/model/read_model.h"
 
 DEFINE_string(forms, "diffuse_table,coupled_diffuse,correlated_g,direction_correlated_g,own_f",
               "the forms to fit, separated by commas: names of TermForms()");

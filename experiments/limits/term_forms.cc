@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
 
 namespace trilobe {
 namespace {

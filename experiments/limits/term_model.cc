@@ -5,10 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "model/spectral/spectral_color.h"
+#include "model/spectral_color.h"
 #include "model/splined_cosine.h"
+#include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/stencil.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/spectral/spectral_model.h"
+#include "trilobe/model/spectral_model.h"
 #include "trilobe/model/stretch.h"
 
 // Models of any terms, of which the paper's is one. A model over channels c is

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "experiments/program.h"
-#include "model/lobes/gauge.h"
-#include "model/lobes/lobe_match.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/model/lobes/lobe_light.h"
+#include "model/objective/gauge.h"
+#include "model/objective/lobe_match.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/model/objective/lobe_light.h"
+#include "trilobe/model/read_model.h"
 
 namespace trilobe {
 namespace {

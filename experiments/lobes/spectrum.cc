@@ -13,8 +13,8 @@
 
 #include "experiments/program.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "model/appearance/color.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/environment.h"
 
 namespace trilobe {

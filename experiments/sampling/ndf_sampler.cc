@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/linear_density.h"
+#include "core/base/linear_density.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/evaluate/half_vector_table.h"
+#include "trilobe/model/half_vector_table.h"
 
 namespace trilobe {
 namespace {

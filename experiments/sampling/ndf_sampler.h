@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "trilobe/model/evaluate/bsdf.h"
-#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/model/bsdf.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 

@@ -21,8 +21,8 @@
 #include "io/pictures/image_file.h"
 #include "model/appearance/color.h"
 #include "trilobe/model/appearance/environment.h"
-#include "trilobe/model/evaluate/bsdf.h"
-#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/bsdf.h"
+#include "trilobe/model/read_model.h"
 
 DEFINE_int32(size, 64, "pixels across the sphere");
 DEFINE_string(samples, "16,64,256", "samples a pixel, of each sampler");

@@ -7,7 +7,7 @@
 
 #include "experiments/stiff/material.h"
 #include "tests/test_util.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 namespace {

@@ -10,7 +10,7 @@
 #include "experiments/stiff/anisotropic_cases.h"
 #include "experiments/stiff/material.h"
 #include "tests/test_util.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -11,7 +11,7 @@
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -15,10 +15,10 @@
 #include "experiments/stiff/answers.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/reference_problem.h"
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 DEFINE_string(case, "all", "name of a case, or all");
 DEFINE_string(solver, "all", "name of a solver, or all that can work on the case");

@@ -20,10 +20,10 @@
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/value_of.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 DEFINE_string(solver, "awls", "a solver that moves single elements, or blocks of them");
 DEFINE_int32(

@@ -25,9 +25,9 @@
 #include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/evaluate/bsdf.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/model/bsdf.h"
+#include "trilobe/model/load_model.h"
+#include "trilobe/model/read_model.h"
 
 namespace nb = nanobind;
 

@@ -29,8 +29,8 @@
 #include "fit_module.h"
 #include "named_values.h"
 #include "owned_array.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/io/formats/trace_file.h"
 #include "trilobe/solvers/solver_options.h"
 
 namespace nb = nanobind;

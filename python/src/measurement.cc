@@ -23,10 +23,10 @@
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/export/convert.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/evaluate/read_model.h"
 #include "trilobe/model/measurement/node_brdf.h"
+#include "trilobe/model/measurement/synth.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/read_model.h"
 
 namespace nb = nanobind;
 

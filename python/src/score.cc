@@ -18,16 +18,16 @@
 #include "fit/reports/score_report.h"
 #include "fit_module.h"
 #include "model/appearance/picture_data.h"
-#include "model/lobes/lobe_match.h"
+#include "model/objective/lobe_match.h"
 #include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/model/objective/weighting.h"
+#include "trilobe/model/read_model.h"
 
 namespace nb = nanobind;
 

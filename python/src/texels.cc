@@ -15,7 +15,7 @@
 #include "owned_array.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/objective/weighting.h"
-#include "trilobe/solvers/texels/texel_solver.h"
+#include "trilobe/solvers/texel_solver.h"
 
 namespace nb = nanobind;
 

@@ -23,11 +23,11 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/export/convert.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/corruption/corruption.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/measurement/corruption.h"
 #include "trilobe/model/measurement/measurement_stats.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 DEFINE_double(error, 0,
               "tolerance of a .bsdf or .zemax.bsdf file: median over directions of its relative "

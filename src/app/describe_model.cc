@@ -8,9 +8,9 @@
 #include "fit/reports/bands_report.h"
 #include "fit/reports/model_report.h"
 #include "fit/reports/print.h"
-#include "io/model_files/stretch_json.h"
-#include "model/lobes/gauge.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "io/formats/stretch_json.h"
+#include "model/objective/gauge.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/material.h"
 
 namespace trilobe {

@@ -27,9 +27,9 @@
 #include "io/pictures/gnuplot.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 DECLARE_bool(plots);
 DECLARE_bool(reconstruction);

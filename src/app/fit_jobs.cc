@@ -28,8 +28,8 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 
 DEFINE_string(shard, "",
               "i/n: make only every n-th of many fits, from the i-th on, and leave the page to the "

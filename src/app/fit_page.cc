@@ -14,7 +14,7 @@
 #include "core/base/json_text.h"
 #include "core/base/text.h"
 #include "fit/reports/print.h"
-#include "io/page/document.h"
+#include "io/pictures/document.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/io/formats/source.h"
 

@@ -13,8 +13,8 @@
 #include "core/files/file.h"
 #include "core/system/content_hash.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/materials/load_model.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/model/load_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 DEFINE_string(
     init, "analytic",

@@ -9,7 +9,7 @@
 #include "core/files/file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/model/load_model.h"
 
 namespace trilobe {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {

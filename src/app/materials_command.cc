@@ -6,7 +6,7 @@
 
 #include "app/command.h"
 #include "fit/reports/print.h"
-#include "model/materials/material_files.h"
+#include "model/material_files.h"
 
 namespace trilobe {
 namespace {

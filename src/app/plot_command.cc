@@ -11,9 +11,9 @@
 #include "core/files/file.h"
 #include "fit/reports/print.h"
 #include "io/pictures/plots.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
+#include "trilobe/io/formats/trace_file.h"
 
 DEFINE_string(trace, "", "trace.csv of a fit, to draw its convergence");
 

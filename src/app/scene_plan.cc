@@ -24,7 +24,7 @@
 #include "fit/reports/print.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 
 namespace trilobe {
 namespace {

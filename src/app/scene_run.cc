@@ -16,7 +16,7 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/weighting.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 DEFINE_string(cache, "",
               "folder where fits are kept for the next time; $XDG_CACHE_HOME/trilobe if "

@@ -12,12 +12,12 @@
 #include "fit/reports/score_report.h"
 #include "fit/reports/verdict_report.h"
 #include "io/pictures/plots.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/model/objective/score.h"
 
 namespace trilobe {

@@ -8,7 +8,7 @@
 
 #include "app/flags.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above");
 

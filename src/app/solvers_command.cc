@@ -2,7 +2,7 @@
 
 #include "app/command.h"
 #include "app/solver_flags.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

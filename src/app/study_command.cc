@@ -25,15 +25,15 @@
 #include "core/files/file.h"
 #include "core/files/json_value.h"
 #include "core/files/text_lines.h"
-#include "fit/study/draw_study.h"
-#include "fit/study/profiles.h"
-#include "fit/study/study.h"
+#include "fit/reports/draw_study.h"
+#include "fit/reports/profiles.h"
+#include "fit/reports/study.h"
 #include "io/pictures/gnuplot.h"
 #include "model/appearance/verdict.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/io/formats/trace_file.h"
 
 DECLARE_string(shard);
 namespace trilobe {

@@ -17,7 +17,7 @@
 #include "app/model_flags.h"
 #include "app/solver_flags.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 DEFINE_string(solvers, "auto,awls,lm", "the solvers to compare, by name");
 DEFINE_int32(

@@ -7,7 +7,7 @@
 
 #include "app/fit_page.h"
 #include "app/fit_run.h"
-#include "fit/study/study.h"
+#include "fit/reports/study.h"
 
 namespace trilobe {
 

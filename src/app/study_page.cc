@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/text.h"
-#include "io/page/document.h"
+#include "io/pictures/document.h"
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {

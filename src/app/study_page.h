@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fit/study/draw_study.h"
-#include "fit/study/study.h"
+#include "fit/reports/draw_study.h"
+#include "fit/reports/study.h"
 
 namespace trilobe {
 

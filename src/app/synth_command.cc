@@ -8,7 +8,7 @@
 #include "app/result_folder.h"
 #include "fit/reports/print.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe {
 namespace {

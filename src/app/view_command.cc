@@ -16,9 +16,9 @@
 #include "core/files/file.h"
 #include "fit/reports/print.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
+#include "trilobe/io/formats/trace_file.h"
 
 DECLARE_string(trace);
 

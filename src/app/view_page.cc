@@ -2,13 +2,13 @@
 
 #include "app/fit_page.h"
 #include "fit/reports/verdict_report.h"
-#include "io/page/page.h"
+#include "io/pictures/page.h"
 #include "model/appearance/picture_data.h"
 #include "model/appearance/verdict.h"
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "model/appearance/verdict.h"
-#include "trilobe/fit/prior/reach.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/fit/finish/reach.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/measurement/measurement.h"
@@ -29,8 +29,8 @@ struct Compared {
   std::vector<std::string> advice = {};
 };
 
-// The page of a model (io/page/page.h), compared with `measured` unless that is null. `path` names
-// the material if the model does not name its source.
+// The page of a model (io/pictures/page.h), compared with `measured` unless that is null. `path`
+// names the material if the model does not name its source.
 ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
                     const Compared& compared, std::span<const IterationRecord> trace,
                     const AppearanceOptions& appearance);

@@ -1,7 +1,7 @@
 #include "trilobe/fit/as_measurement.h"
 
 #include "model/appearance/node_appearance.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 

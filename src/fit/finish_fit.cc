@@ -18,8 +18,8 @@
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/score.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

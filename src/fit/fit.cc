@@ -17,15 +17,15 @@
 #include "fit/samples_to_fit.h"
 #include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
-#include "model/lobes/gauge.h"
 #include "model/measurement/anisotropy.h"
 #include "model/objective/canonical_form.h"
+#include "model/objective/gauge.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/measured_share.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/model/objective/reconstruct.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "fit/finish/albedo_limit.h"
 #include "model/appearance/node_appearance.h"
-#include "model/lobes/beyond_data.h"
-#include "trilobe/core/math/angles.h"
+#include "model/objective/beyond_data.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/render.h"
 #include "trilobe/model/appearance/view.h"

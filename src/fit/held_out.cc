@@ -12,11 +12,11 @@
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/fit/prior/reach.h"
+#include "trilobe/fit/finish/reach.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/lobes/reconstruct.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

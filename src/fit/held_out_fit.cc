@@ -5,9 +5,9 @@
 #include "fit/held_out.h"
 #include "fit/samples_to_fit.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/model/objective/reconstruct.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 namespace trilobe {
 

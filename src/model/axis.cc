@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/core/base/check.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
-#include "trilobe/core/math/catmull_rom.h"
+#include "trilobe/core/base/merl_grid.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "model/splined_cosine.h"
+#include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {

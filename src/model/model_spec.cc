@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/geometry/directions.h"
 
 namespace trilobe {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "trilobe/core/math/catmull_rom.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/catmull_rom.h"
+#include "trilobe/core/base/stencil.h"
 
 namespace trilobe {
 

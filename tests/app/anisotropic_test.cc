@@ -11,8 +11,8 @@
 
 #include "tests/app/run_program.h"
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/model/read_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -12,8 +12,8 @@
 #include "tests/app/run_program.h"
 #include "tests/io/formats/tensor_bytes.h"
 #include "tests/test_util.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -18,9 +18,9 @@
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
 #include "tests/paths.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/io/formats/trace_file.h"
 #include "trilobe/model/stretch.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -12,7 +12,7 @@
 
 #include "tests/app/run_program.h"
 #include "tests/paths.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "tests/app/run_program.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/io/model_files/trace_file.h"
-#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/io/formats/trace_file.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

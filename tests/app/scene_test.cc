@@ -17,10 +17,10 @@
 #include "io/formats/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/evaluate/prepared_model.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/model/load_model.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/base/text.h"
 #include "core/system/content_hash.h"
 #include "tests/app/run_program.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

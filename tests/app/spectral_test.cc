@@ -9,13 +9,13 @@
 
 #include "io/formats/rgl_export.h"
 #include "io/formats/rgl_file.h"
-#include "model/spectral/spectral_color.h"
+#include "model/spectral_color.h"
 #include "tests/app/run_program.h"
-#include "tests/model/spectral/spectral_materials.h"
+#include "tests/model/spectral_materials.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
+#include "trilobe/model/read_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

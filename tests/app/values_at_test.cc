@@ -9,7 +9,7 @@
 #include "tests/app/run_program.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/model/load_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,6 +1,6 @@
 #include <trilobe/fit/fit.h>
+#include <trilobe/io/formats/model_file.h>
 #include <trilobe/io/formats/source.h>
-#include <trilobe/io/model_files/model_file.h>
 
 #include <iostream>
 

@@ -8,7 +8,7 @@
 #include "tests/test_directory.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

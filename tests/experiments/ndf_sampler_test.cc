@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/model/evaluate/half_vector_bins.h"
-#include "tests/model/evaluate/materials.h"
+#include "tests/model/half_vector_bins.h"
+#include "tests/model/materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 

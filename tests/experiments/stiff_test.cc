@@ -13,7 +13,7 @@
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiments/limits/term_forms.h"
-#include "tests/model/spectral/spectral_materials.h"
+#include "tests/model/spectral_materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/solvers/sums/normal_equations.h"

@@ -8,8 +8,8 @@
 #include "fit/finish/reflectance.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/fit/prior/node_choice.h"
-#include "trilobe/fit/prior/synthetic_prior.h"
+#include "trilobe/fit/finish/node_choice.h"
+#include "trilobe/fit/finish/synthetic_prior.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

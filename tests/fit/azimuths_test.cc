@@ -11,10 +11,10 @@
 
 #include "fit/choose_azimuths.h"
 #include "model/measurement/counter_random.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

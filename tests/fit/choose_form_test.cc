@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

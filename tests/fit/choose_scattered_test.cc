@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "model/appearance/picture_data.h"
+#include "trilobe/fit/finish/reach.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/fit/prior/reach.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -12,7 +12,7 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/corruption/corruption.h"
+#include "trilobe/model/measurement/corruption.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/appearance/appearance.h"

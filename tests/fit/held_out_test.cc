@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/fit/prior/reach.h"
+#include "trilobe/fit/finish/reach.h"
 #include "trilobe/model/objective/weighting.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

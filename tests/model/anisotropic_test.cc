@@ -7,13 +7,13 @@
 #include <set>
 #include <vector>
 
-#include "model/lobes/gauge.h"
-#include "model/lobes/lobes.h"
+#include "model/objective/gauge.h"
+#include "model/objective/lobes.h"
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/model/lobes/lobe_light.h"
+#include "trilobe/model/objective/lobe_light.h"
 #include "trilobe/model/objective/objective.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "tests/test_util.h"
+#include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/catmull_rom.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

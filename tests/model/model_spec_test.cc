@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "tests/test_util.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

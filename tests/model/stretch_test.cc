@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/lobes.h"
+#include "model/objective/lobes.h"
 #include "tests/test_util.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/geometry/directions.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
 

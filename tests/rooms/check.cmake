@@ -30,16 +30,16 @@ function(expect_failure file text message)
   endif()
 endfunction()
 
-expect_failure(core/math/stencil.h "#include \"trilobe/core/geometry/channels.h\""
-               "core/math/stencil.h: #include \"trilobe/core/geometry/channels.h\", but the room math does not see geometry")
+expect_failure(core/base/stencil.h "#include \"trilobe/core/base/channels.h\""
+               "core/base/stencil.h: #include \"trilobe/core/base/channels.h\", but the room math does not see geometry")
 expect_failure(solvers/solver.cc "#include \"../files/file.h\""
                "solvers/solver.cc: write #include \"../files/file.h\" as \"trilobe/GROUP/ROOM/NAME.h\" or")
 expect_failure(solvers/solver.cc "#include \"solvers/solver.h\""
                "solvers/solver.cc: there is no header for #include \"solvers/solver.h\"")
-expect_failure(model/lobes/reconstruct.h "#include <Eigen/Core>"
-               "model/lobes/reconstruct.h: #include <Eigen/Core> in a public header")
-expect_failure(core/math/stencil.cc "#include <cmath>"
-               "core/math/stencil.cc: include trilobe/core/math/stencil.h first")
+expect_failure(model/objective/reconstruct.h "#include <Eigen/Core>"
+               "model/objective/reconstruct.h: #include <Eigen/Core> in a public header")
+expect_failure(core/base/stencil.cc "#include <cmath>"
+               "core/base/stencil.cc: include trilobe/core/base/stencil.h first")
 expect_failure(rooms.txt "== extra:\nextra: model" "rooms.txt: extra sees model, which is not listed above it")
 expect_failure(rooms.txt "== attic:\nextra:\nother: extra"
                "rooms.txt: no file of other includes a header of extra")

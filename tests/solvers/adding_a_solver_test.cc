@@ -9,8 +9,8 @@
 
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 

@@ -11,9 +11,9 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

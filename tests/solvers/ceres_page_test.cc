@@ -9,8 +9,8 @@
 
 #include "tests/test_util.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/solvers/registry/solvers.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 // Defined in the program of the page.

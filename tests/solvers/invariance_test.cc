@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/core/base/no_threads.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

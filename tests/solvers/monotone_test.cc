@@ -11,7 +11,7 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

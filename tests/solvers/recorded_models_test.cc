@@ -15,11 +15,11 @@
 
 #include "tests/paths.h"
 #include "tests/test_util.h"
+#include "trilobe/model/measurement/synth.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/model/synth/synth.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

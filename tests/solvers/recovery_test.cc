@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/test_util.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 

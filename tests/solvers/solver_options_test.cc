@@ -13,8 +13,8 @@
 
 #include "tests/test_directory.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

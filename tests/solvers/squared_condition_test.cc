@@ -17,8 +17,8 @@
 #include "tests/test_util.h"
 #include "trilobe/model/objective/parameter_blocks.h"
 #include "trilobe/model/objective/sample_residual.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

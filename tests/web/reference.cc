@@ -11,10 +11,10 @@
 #include <random>
 #include <string>
 
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/evaluate/bsdf.h"
-#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/bsdf.h"
+#include "trilobe/model/read_model.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/fit/prior/synthetic_prior.h"
+#include "trilobe/fit/finish/synthetic_prior.h"
 #include "trilobe/fit/prune/model_choice.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"

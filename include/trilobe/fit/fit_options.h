@@ -13,9 +13,9 @@
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/iteration_record.h"
 #include "trilobe/model/objective/weighting.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/fit/prior/node_choice.h"
+#include "trilobe/fit/finish/node_choice.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/model_spec.h"

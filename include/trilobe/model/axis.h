@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/stencil.h"
 
 namespace trilobe {
 

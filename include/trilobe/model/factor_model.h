@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/stencil.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/model/value_of.h"
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/stretch.h"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

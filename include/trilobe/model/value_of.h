@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/model_spec.h"
 
 // The formula of the model,

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

@@ -12,19 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "core/math/robust_line.h"
+#include "core/base/robust_line.h"
+#include "fit/finish/albedos_of.h"
 #include "fit/finish/lower_g.h"
-#include "fit/prior/albedos_of.h"
-#include "fit/prior/shown_light.h"
-#include "model/lobes/beyond_data.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
-#include "trilobe/core/math/angles.h"
+#include "fit/finish/shown_light.h"
+#include "model/objective/beyond_data.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/brdf_table.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/table_layout.h"

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <vector>
 
-#include "fit/prior/albedos_of.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/math/angles.h"
+#include "fit/finish/albedos_of.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
 
 namespace trilobe {
 namespace {

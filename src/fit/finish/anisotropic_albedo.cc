@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "fit/finish/lower_g.h"
-#include "fit/prior/shown_light.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "fit/finish/shown_light.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 namespace {

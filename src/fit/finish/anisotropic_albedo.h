@@ -2,8 +2,8 @@
 #define TRILOBE_FIT_FINISH_ANISOTROPIC_ALBEDO_H_
 
 #include "fit/finish/albedo_limit.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/table_layout.h"

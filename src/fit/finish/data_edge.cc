@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/lobes/beyond_data.h"
+#include "model/objective/beyond_data.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/core/base/stop_check.h"

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "model/measurement/albedo_rule.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/stencil.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 namespace {

@@ -11,10 +11,10 @@
 #include "model/measurement/albedo_rule.h"
 #include "model/objective/sample_derivatives.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/objective/quadratic_model.h"
+#include "trilobe/model/prepared_model.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {

@@ -8,7 +8,7 @@
 #include "fit/finish/anisotropic_albedo.h"
 #include "fit/finish/light_refit.h"
 #include "fit/finish/lower_g.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/axis.h"
 
 namespace trilobe {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/axis.h"
 
 namespace trilobe {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "solvers/smooth/log_stepper.h"
+#include "solvers/joint/log_stepper.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/quadratic_model.h"

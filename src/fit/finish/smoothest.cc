@@ -7,7 +7,7 @@
 
 #include "fit/finish/reflectance.h"
 #include "model/objective/canonical_form.h"
-#include "solvers/smooth/log_stepper.h"
+#include "solvers/joint/log_stepper.h"
 
 namespace trilobe {
 

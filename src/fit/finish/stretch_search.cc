@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/algebra/symmetric_matrix.h"
-#include "model/lobes/lobes.h"
+#include "model/objective/lobes.h"
 #include "model/objective/sample_derivatives.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/value_of.h"

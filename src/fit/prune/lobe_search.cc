@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "model/lobes/lobes.h"
+#include "model/objective/lobes.h"
 #include "solvers/joint/joint_step.h"
-#include "solvers/multistart/start_elimination.h"
+#include "solvers/starts/start_elimination.h"
 #include "trilobe/core/base/stop_check.h"
 
 namespace trilobe {

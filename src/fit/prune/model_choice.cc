@@ -18,14 +18,14 @@
 #include "fit/prune/prune.h"
 #include "fit/prune/thinned_objective.h"
 #include "fit/prune/unmeasured_prior.h"
-#include "model/lobes/gauge.h"
 #include "model/objective/canonical_form.h"
+#include "model/objective/gauge.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/model/objective/score.h"
 
 namespace trilobe {

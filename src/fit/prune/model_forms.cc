@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "fit/finish/stretch_search.h"
-#include "model/lobes/gauge.h"
-#include "model/lobes/lobes.h"
+#include "model/objective/gauge.h"
+#include "model/objective/lobes.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

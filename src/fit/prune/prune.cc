@@ -11,8 +11,8 @@
 #include "fit/prune/prune_tables.h"
 #include "fit/prune/pruning.h"
 #include "fit/prune/stored_layouts.h"
-#include "model/lobes/gauge.h"
-#include "model/lobes/lobes.h"
+#include "model/objective/gauge.h"
+#include "model/objective/lobes.h"
 #include "solvers/joint/reduction.h"
 
 namespace trilobe {

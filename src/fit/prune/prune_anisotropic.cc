@@ -12,9 +12,9 @@
 #include "fit/prune/lobe_search.h"
 #include "fit/prune/prune.h"
 #include "fit/prune/pruning.h"
-#include "model/lobes/lobes.h"
+#include "model/objective/lobes.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
 
 namespace trilobe {
 namespace {

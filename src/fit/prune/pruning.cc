@@ -5,8 +5,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "model/lobes/gauge.h"
 #include "model/objective/canonical_form.h"
+#include "model/objective/gauge.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/run.h"

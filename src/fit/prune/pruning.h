@@ -11,7 +11,7 @@
 
 #include "fit/prune/prune_options.h"
 #include "fit/prune/stored_layouts.h"
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/quadratic_model.h"

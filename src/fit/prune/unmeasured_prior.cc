@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/fit/prior/reach.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/fit/finish/reach.h"
 #include "trilobe/model/measurement/brdf_table.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {

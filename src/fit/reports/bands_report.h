@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "trilobe/fit/bands/fit_bands.h"
+#include "trilobe/fit/fit_bands.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/spectral/spectral_model.h"
+#include "trilobe/model/spectral_model.h"
 
 namespace trilobe {
 

@@ -13,9 +13,9 @@
 #include "fit/reports/model_report.h"
 #include "fit/reports/print.h"
 #include "fit/reports/verdict_report.h"
-#include "io/model_files/stretch_json.h"
+#include "io/formats/stretch_json.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

@@ -9,9 +9,9 @@
 #include "fit/reports/appearance_report.h"
 #include "fit/reports/bands_report.h"
 #include "fit/reports/print.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/solvers/registry/solvers.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "fit/reports/verdict_report.h"
+#include "trilobe/fit/finish/node_choice.h"
+#include "trilobe/fit/finish/reach.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/fit/prior/node_choice.h"
-#include "trilobe/fit/prior/reach.h"
 #include "trilobe/fit/prune/model_choice.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/lobes/lobe_light.h"
 #include "trilobe/model/measurement/measurement_stats.h"
 #include "trilobe/model/model_spec.h"
+#include "trilobe/model/objective/lobe_light.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/solver.h"
 

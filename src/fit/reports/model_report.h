@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/model/lobes/lobe_light.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/model_spec.h"
+#include "trilobe/model/objective/lobe_light.h"
 
 namespace trilobe {
 

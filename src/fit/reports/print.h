@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/text.h"
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "fit/reports/appearance_report.h"
-#include "trilobe/core/geometry/merl_grid.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/merl_grid.h"
 
 namespace trilobe {
 namespace {

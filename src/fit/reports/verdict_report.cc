@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fit/reports/print.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/measurement/measured_share.h"
 
 namespace trilobe {

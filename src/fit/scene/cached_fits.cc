@@ -11,9 +11,9 @@
 #include "core/system/content_hash.h"
 #include "io/formats/source_option.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/model/read_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "core/files/little_endian.h"
 #include "model/measurement/sample_density.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/stencil.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {

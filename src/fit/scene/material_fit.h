@@ -10,7 +10,7 @@
 #include "fit/scene/fit_cache.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/io/formats/measurement_format.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/solver.h"

@@ -16,7 +16,7 @@
 #include "io/formats/source_option.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/model/load_model.h"
 
 namespace trilobe {
 namespace {

@@ -18,13 +18,13 @@
 #include "fit/scene/scene_judge.h"
 #include "io/formats/source_option.h"
 #include "model/appearance/verdict.h"
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/model/load_model.h"
 
 namespace trilobe {
 namespace {

@@ -12,7 +12,7 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {

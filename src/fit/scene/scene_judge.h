@@ -6,7 +6,7 @@
 #include "fit/scene/scene_file.h"
 #include "fit/scene/scene_reads.h"
 #include "model/appearance/picture_data.h"
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "fit/scene/directions.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/math/linear_density.h"
+#include "core/base/linear_density.h"
 
 namespace trilobe {
 namespace {

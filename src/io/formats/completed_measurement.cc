@@ -9,8 +9,8 @@
 #include "model/measurement/counter_random.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/measurement/hemisphere_grid.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 namespace {

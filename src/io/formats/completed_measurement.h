@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/measurement/node_brdf.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {

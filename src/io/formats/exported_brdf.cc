@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "model/measurement/counter_random.h"
-#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 namespace {

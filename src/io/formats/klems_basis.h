@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

@@ -14,7 +14,7 @@
 #include "io/formats/angle_list.h"
 #include "io/formats/spectrum.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/evaluate/half_vector_table.h"
+#include "trilobe/model/half_vector_table.h"
 
 namespace trilobe {
 namespace {

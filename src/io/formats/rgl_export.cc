@@ -16,8 +16,8 @@
 #include "io/formats/spectrum.h"
 #include "io/formats/tensor_file.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/evaluate/bsdf.h"
-#include "trilobe/model/evaluate/half_vector_table.h"
+#include "trilobe/model/bsdf.h"
+#include "trilobe/model/half_vector_table.h"
 
 namespace trilobe {
 namespace {

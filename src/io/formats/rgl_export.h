@@ -5,9 +5,9 @@
 #include <string>
 
 #include "io/formats/completed_measurement.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/spectral/spectral_model.h"
+#include "trilobe/model/spectral_model.h"
 
 namespace trilobe {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/measurement.h"
 

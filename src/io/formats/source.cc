@@ -20,8 +20,8 @@
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/corruption/corruption.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/corruption.h"
+#include "trilobe/model/measurement/synth.h"
 
 // The formats of the library, in the order in which they are asked whether a file is theirs: those
 // that a first line or more tells before that of which the size alone does. NAME stands for the

@@ -11,7 +11,7 @@
 #include "io/formats/utia_file.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/corruption/corruption.h"
+#include "trilobe/model/measurement/corruption.h"
 
 namespace trilobe {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/formats/spectrum_bands.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {

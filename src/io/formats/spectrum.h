@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "model/spectral/spectral_color.h"
-#include "trilobe/core/geometry/channels.h"
+#include "model/spectral_color.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "model/spectral/spectral_color.h"
-#include "trilobe/core/geometry/channels.h"
+#include "model/spectral_color.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {

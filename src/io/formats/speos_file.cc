@@ -11,7 +11,7 @@
 #include "io/formats/angle_list.h"
 #include "io/formats/same_name.h"
 #include "io/formats/spectrum_bands.h"
-#include "model/spectral/spectral_color.h"
+#include "model/spectral_color.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 

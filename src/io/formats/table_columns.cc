@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "io/formats/column_words.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/core/geometry/channels.h"
 
 namespace trilobe {
 namespace {

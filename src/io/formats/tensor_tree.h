@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

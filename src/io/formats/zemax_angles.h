@@ -1,7 +1,7 @@
 #ifndef TRILOBE_IO_FORMATS_ZEMAX_ANGLES_H_
 #define TRILOBE_IO_FORMATS_ZEMAX_ANGLES_H_
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

@@ -4,9 +4,9 @@
 
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/lobes/lobe_light.h"
+#include "trilobe/model/objective/lobe_light.h"
 
 namespace trilobe {
 namespace {

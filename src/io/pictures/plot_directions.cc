@@ -9,8 +9,8 @@
 #include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
 
 namespace trilobe {
 namespace {

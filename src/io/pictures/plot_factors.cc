@@ -15,8 +15,8 @@
 #include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
-#include "model/lobes/gauge.h"
-#include "trilobe/model/lobes/lobe_light.h"
+#include "model/objective/gauge.h"
+#include "trilobe/model/objective/lobe_light.h"
 
 namespace trilobe {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/lobes/lobe_light.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/model/objective/lobe_light.h"
 
 namespace trilobe {
 

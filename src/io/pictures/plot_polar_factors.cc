@@ -11,7 +11,7 @@
 #include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plot_factors.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/stencil.h"
 
 namespace trilobe {
 namespace {

@@ -9,7 +9,7 @@
 #include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 

@@ -8,12 +8,12 @@
 
 #include "io/pictures/words.h"
 #include "model/appearance/picture_data.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/objective/iteration_record.h"
-#include "trilobe/model/spectral/spectral_model.h"
+#include "trilobe/model/spectral_model.h"
 
 namespace trilobe {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 
 namespace trilobe {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "trilobe/core/base/check.h"
-#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/math/lanes.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "core/base/lanes.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/environment.h"
 
 namespace trilobe {

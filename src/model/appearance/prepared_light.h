@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/lanes.h"
-#include "trilobe/core/geometry/directions.h"
+#include "core/base/lanes.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/environment.h"
 
 namespace trilobe {

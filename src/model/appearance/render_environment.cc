@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/math/lanes.h"
+#include "core/base/lanes.h"
 #include "model/appearance/color.h"
 #include "model/appearance/mirrored_environment.h"
 #include "model/appearance/prepared_light.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/check.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/render.h"
 #include "trilobe/model/appearance/view.h"
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <numeric>
 
-#include "core/math/quantile.h"
+#include "core/base/quantile.h"
 #include "model/appearance/color.h"
 #include "trilobe/core/base/check.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 
 namespace trilobe {
 

@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/grid_cosines.h"
-#include "core/math/quantile.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "core/base/grid_cosines.h"
+#include "core/base/quantile.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/core/system/parallel.h"
 
 namespace trilobe {

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "core/base/grid_cosines.h"
 #include "core/base/text.h"
-#include "core/geometry/grid_cosines.h"
 #include "model/measurement/sample_numbers.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/grid_cosines.h"
+#include "core/base/grid_cosines.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

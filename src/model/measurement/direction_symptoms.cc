@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/grid_cosines.h"
-#include "core/math/quantile.h"
+#include "core/base/grid_cosines.h"
+#include "core/base/quantile.h"
 #include "model/measurement/sample_symptoms.h"
 #include "model/measurement/symptoms.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
 

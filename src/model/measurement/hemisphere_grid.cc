@@ -10,7 +10,7 @@
 
 #include "core/files/text_lines.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/measurement/brdf_table.h"
 
 namespace trilobe {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/grid_cosines.h"
-#include "core/math/quantile.h"
+#include "core/base/grid_cosines.h"
+#include "core/base/quantile.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/system/parallel.h"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "trilobe/core/base/check.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/measurement.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/stencil.h"
 
 namespace trilobe {
 namespace {

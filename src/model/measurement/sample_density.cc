@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/merl_grid.h"
 
 namespace trilobe {
 

@@ -13,9 +13,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/math/quantile.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/math/angles.h"
+#include "core/base/quantile.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
 
 namespace trilobe {
 namespace {

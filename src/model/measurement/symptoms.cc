@@ -8,10 +8,10 @@
 #include <iterator>
 #include <sstream>
 
-#include "core/geometry/grid_cosines.h"
-#include "core/math/quantile.h"
+#include "core/base/grid_cosines.h"
+#include "core/base/quantile.h"
 #include "model/measurement/own_shadow.h"
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/lanes.h"
+#include "core/base/lanes.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/stencil.h"
 #include "trilobe/core/system/parallel.h"
 
 namespace trilobe {

@@ -10,10 +10,10 @@
 #include <span>
 #include <utility>
 
-#include "core/math/quantile.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/math/angles.h"
+#include "core/base/quantile.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 namespace {

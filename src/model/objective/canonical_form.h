@@ -1,7 +1,7 @@
 #ifndef TRILOBE_MODEL_OBJECTIVE_CANONICAL_FORM_H_
 #define TRILOBE_MODEL_OBJECTIVE_CANONICAL_FORM_H_
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 

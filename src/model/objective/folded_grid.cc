@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/geometry/grid_cosines.h"
-#include "model/lobes/shadowing_pieces.h"
-#include "trilobe/core/geometry/directions.h"
+#include "core/base/grid_cosines.h"
+#include "model/objective/shadowing_pieces.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/system/parallel.h"
 
 namespace trilobe {

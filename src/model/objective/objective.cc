@@ -17,7 +17,7 @@
 #include "model/objective/stencils_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 
 namespace trilobe {
 namespace {

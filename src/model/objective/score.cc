@@ -8,7 +8,7 @@
 
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {

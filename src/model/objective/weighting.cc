@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/base/grid_cosines.h"
 #include "core/base/names.h"
-#include "core/geometry/grid_cosines.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/measurement/brdf_samples.h"

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/algebra/element_step.h"
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "solvers/awls/sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"

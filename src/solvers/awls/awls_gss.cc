@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solvers/gaussian_filter.h"
-#include "solvers/sums/grid/cell_sums.h"
+#include "solvers/sums/cell_sums.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/folded_grid.h"
 #include "trilobe/model/objective/spline_cells.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "solvers/sums/block_equations.h"
-#include "solvers/sums/grid/cell_sums.h"
-#include "solvers/sums/grid/shadowing_sums.h"
+#include "solvers/sums/cell_sums.h"
 #include "solvers/sums/sample_lookups.h"
+#include "solvers/sums/shadowing_sums.h"
 #include "solvers/sums/shadowing_updates.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/folded_samples.h"

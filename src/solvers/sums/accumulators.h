@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solvers/sums/parameter_kind.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/stencil.h"
 #include "trilobe/model/objective/folded_samples.h"
 
 namespace trilobe {

@@ -7,8 +7,8 @@
 
 #include "core/algebra/symmetric_matrix.h"
 #include "model/objective/sample_derivatives.h"
-#include "solvers/sums/grid/joint_rows.h"
-#include "solvers/sums/grid/joint_shadowing.h"
+#include "solvers/sums/joint_rows.h"
+#include "solvers/sums/joint_shadowing.h"
 #include "solvers/sums/scattered_equations.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/system/parallel.h"

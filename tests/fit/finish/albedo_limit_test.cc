@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/factor_model.h"
 

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/model/evaluate/prepared_model.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/objective/reconstruct.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

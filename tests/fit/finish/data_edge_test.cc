@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/model/lobes/reconstruct.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

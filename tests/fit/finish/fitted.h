@@ -6,8 +6,8 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
 

@@ -9,7 +9,7 @@
 #include "fit/finish/light_bounds.h"
 #include "fit/finish/limit_light.h"
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "fit/finish/light_bounds.h"
-#include "trilobe/model/materials/load_model.h"
+#include "trilobe/model/load_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -11,8 +11,8 @@
 #include "model/objective/canonical_form.h"
 #include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

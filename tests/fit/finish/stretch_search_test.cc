@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/lobes/lobes.h"
+#include "model/objective/lobes.h"
 #include "tests/test_util.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "tests/test_util.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/model/synth/synth.h"
-#include "trilobe/solvers/registry/solvers.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/model/measurement/synth.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/lobes/reconstruct.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/io/formats/model_file.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/lobes.h"
+#include "model/objective/lobes.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/node_brdf.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

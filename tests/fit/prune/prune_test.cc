@@ -7,13 +7,13 @@
 #include <limits>
 #include <vector>
 
-#include "model/lobes/gauge.h"
+#include "model/objective/gauge.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/score.h"
-#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/brdf_table.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

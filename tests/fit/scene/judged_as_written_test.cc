@@ -15,13 +15,13 @@
 #include "model/appearance/verdict.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
+#include "trilobe/model/read_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

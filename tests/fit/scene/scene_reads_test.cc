@@ -7,10 +7,10 @@
 #include <numeric>
 #include <vector>
 
-#include "core/math/quantile.h"
+#include "core/base/quantile.h"
 #include "tests/test_util.h"
-#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/objective/objective.h"
+#include "trilobe/model/objective/reconstruct.h"
 #include "trilobe/model/objective/weighting.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "tests/io/formats/read_as.h"
-#include "tests/model/evaluate/materials.h"
+#include "tests/model/materials.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

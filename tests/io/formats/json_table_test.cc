@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/test_directory.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/measurement/measurement.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe {
 

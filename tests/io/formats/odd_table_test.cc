@@ -10,7 +10,7 @@
 #include "core/files/utf16.h"
 #include "io/formats/table_lines.h"
 #include "tests/test_directory.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -10,8 +10,8 @@
 #include "io/pictures/image_file.h"
 #include "tests/core/files/first_bytes.h"
 #include "tests/test_directory.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

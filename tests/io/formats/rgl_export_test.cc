@@ -12,13 +12,13 @@
 #include "io/formats/completed_measurement.h"
 #include "io/formats/rgl_file.h"
 #include "io/formats/tensor_file.h"
-#include "tests/model/evaluate/materials.h"
-#include "tests/model/spectral/spectral_materials.h"
+#include "tests/model/materials.h"
+#include "tests/model/spectral_materials.h"
 #include "tests/paths.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/evaluate/read_model.h"
-#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/reconstruct.h"
+#include "trilobe/model/read_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

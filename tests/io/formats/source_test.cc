@@ -13,7 +13,7 @@
 #include "io/formats/rgl_file.h"
 #include "tests/io/formats/tensor_bytes.h"
 #include "tests/test_directory.h"
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/measurement/measurement_stats.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -22,7 +22,7 @@
 #include "tests/paths.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -11,8 +11,8 @@
 #include "model/appearance/color.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/model/measurement/synth.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
-#include "trilobe/model/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/measurement/synth.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
-#include "trilobe/model/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

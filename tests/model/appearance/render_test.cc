@@ -9,7 +9,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/model/measurement/albedo.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

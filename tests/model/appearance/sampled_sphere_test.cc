@@ -9,7 +9,7 @@
 
 #include "model/appearance/verdict.h"
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

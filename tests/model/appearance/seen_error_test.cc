@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/appearance/color.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/appearance/appearance.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "model/measurement/counter_random.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/hemisphere_grid.h"
 

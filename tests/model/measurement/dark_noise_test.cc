@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/math/quantile.h"
+#include "core/base/quantile.h"
 #include "model/measurement/bad_readings.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/brdf_samples.h"

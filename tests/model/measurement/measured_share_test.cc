@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

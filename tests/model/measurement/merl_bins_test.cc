@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/measurement.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -12,8 +12,8 @@
 #include "model/measurement/bad_readings.h"
 #include "tests/test_util.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/corruption/corruption.h"
 #include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/corruption.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "tests/test_directory.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

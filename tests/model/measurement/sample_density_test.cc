@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/measurement.h"
 

@@ -12,7 +12,7 @@
 #include "model/measurement/unmeasured_samples.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

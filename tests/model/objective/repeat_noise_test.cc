@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "tests/test_util.h"
-#include "trilobe/core/math/angles.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/model/objective/weighting.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

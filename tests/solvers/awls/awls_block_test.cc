@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/gauge.h"
-#include "solvers/sums/grid/cell_sums.h"
+#include "model/objective/gauge.h"
+#include "solvers/sums/cell_sums.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/model/synth/synth.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/model/measurement/synth.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

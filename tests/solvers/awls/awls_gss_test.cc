@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/core/math/catmull_rom.h"
-#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/starts/initial_model.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

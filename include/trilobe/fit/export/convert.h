@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/measurement/measurement.h"
 

@@ -6,12 +6,12 @@
 #include <variant>
 #include <vector>
 
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/hemisphere_grid.h"
 #include "trilobe/model/measurement/measurement.h"
-#include "trilobe/model/synth/synth.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/measurement/albedo.h"
 
 namespace trilobe {

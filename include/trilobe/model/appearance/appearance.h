@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/albedo_error.h"
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/appearance/material.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 
 namespace trilobe {
 

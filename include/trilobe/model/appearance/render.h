@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/check.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/appearance/material.h"

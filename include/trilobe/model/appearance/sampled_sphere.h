@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/seen_error.h"

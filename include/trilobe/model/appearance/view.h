@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/environment.h"
 
 namespace trilobe {

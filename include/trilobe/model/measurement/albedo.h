@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/check.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
-#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/merl_grid.h"
 #include "trilobe/model/measurement/brdf_table.h"
 
 namespace trilobe {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/brdf_table.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/measurement/brdf_table.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/check.h"
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 

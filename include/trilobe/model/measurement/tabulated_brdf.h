@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/measurement/brdf_table.h"
 
 namespace trilobe {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "trilobe/core/math/catmull_rom.h"
+#include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/weighting.h"

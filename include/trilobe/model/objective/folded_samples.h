@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/math/stencil.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/stencil.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/base/channels.h"
 #include "trilobe/model/objective/folded_grid.h"
 
 namespace trilobe {

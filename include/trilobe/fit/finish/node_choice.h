@@ -1,0 +1,65 @@
+#ifndef TRILOBE_FIT_FINISH_NODE_CHOICE_H_
+#define TRILOBE_FIT_FINISH_NODE_CHOICE_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/node_brdf.h"
+#include "trilobe/model/model_spec.h"
+#include "trilobe/model/objective/iteration_record.h"
+#include "trilobe/model/objective/objective.h"
+
+namespace trilobe {
+
+// A choice of nodes of D and G.
+struct NodeCandidate {
+  std::string name;  // "D 12rx36, G 6x24"; r: even steps of the square root of theta
+  ModelSpec spec;
+  double error = 0;  // E on the held-out samples, relative to a black model
+  double seconds = 0;
+};
+
+// `spec` on nodes from coarse to fine, for data with these numbers of theta and phi: D from 8r x 24
+// to 24r x 72, G from 6 x 16 to 10 x 48. D has at most as many phi as the data, G half of that. The
+// second candidate is the default. G has rings towards the horizon if that of `spec` has. `error`
+// and `seconds` are 0.
+std::vector<NodeCandidate> NodeLadder(const ModelSpec& spec, int thetas, int phis);
+
+// Whether each sample is held out, about one in five. [n] Depends only on the seed and the
+// unordered pair of directions. Throws Error for samples without directions.
+std::vector<bool> HeldOut(const BrdfSamples& samples, uint64_t seed);
+
+struct NodeChoiceOptions {
+  uint64_t seed = 1;
+  double prior = 1;                         // SyntheticPriorOptions::weight, or 0 for no prior
+  std::optional<HemisphereGrid> grid = {};  // SyntheticPriorOptions::grid
+  // SolverOptions::on_iteration of each candidate's fit.
+  std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
+  StopCheck stop = {};
+};
+
+struct NodeChoice {
+  FactorModel model;                      // of the chosen nodes, fitted to the other samples
+  std::vector<NodeCandidate> tried = {};  // the first candidates of the ladder
+  int chosen = 0;                         // index of the chosen one
+  int held_out = 0;                       // number of samples
+  double seconds = 0;                     // total
+};
+
+// Tries the candidates in order while the error on held-out pairs of directions falls by at least
+// 1 %. Each is fitted by a few iterations, starting from the one before, to the other pairs and to
+// a prior made from them. The result does not depend on the number of threads. If stopped, chooses
+// among those tried. Throws Error for an empty ladder, samples without directions, and too few
+// samples to hold any out.
+NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& ladder,
+                       const NodeChoiceOptions& options);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_FINISH_NODE_CHOICE_H_

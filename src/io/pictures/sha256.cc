@@ -1,0 +1,83 @@
+#include "io/pictures/sha256.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace trilobe {
+namespace {
+
+constexpr size_t kBlock = 64;  // bytes
+
+// The first 32 bits of the fractions of the cube roots of the first 64 primes.
+constexpr std::array<uint32_t, 64> kRoots = {
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+
+using State = std::array<uint32_t, 8>;
+
+void AddBlock(std::string_view block, State* state) {
+  std::array<uint32_t, 64> words{};
+  for (size_t k = 0; k < kBlock; ++k) {
+    words[k / 4] = words[k / 4] << 8 | static_cast<unsigned char>(block[k]);
+  }
+  for (size_t k = 16; k < words.size(); ++k) {
+    const uint32_t a = words[k - 15], b = words[k - 2];
+    words[k] = words[k - 16] + words[k - 7] + (std::rotr(a, 7) ^ std::rotr(a, 18) ^ a >> 3) +
+               (std::rotr(b, 17) ^ std::rotr(b, 19) ^ b >> 10);
+  }
+  auto [a, b, c, d, e, f, g, h] = *state;
+  for (size_t k = 0; k < words.size(); ++k) {
+    const uint32_t first = h + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) +
+                           ((e & f) ^ (~e & g)) + kRoots[k] + words[k];
+    const uint32_t second =
+        (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+    h = g;
+    g = f;
+    f = e;
+    e = d + first;
+    d = c;
+    c = b;
+    b = a;
+    a = first + second;
+  }
+  const State added = {a, b, c, d, e, f, g, h};
+  for (size_t k = 0; k < added.size(); ++k) (*state)[k] += added[k];
+}
+
+// The `count` bytes of a number, highest first.
+std::string BigEndian(uint64_t number, size_t count) {
+  std::string bytes(count, '\0');
+  for (size_t k = 0; k < count; ++k) bytes[k] = static_cast<char>(number >> 8 * (count - 1 - k));
+  return bytes;
+}
+
+}  // namespace
+
+std::string Sha256(std::string_view bytes) {
+  State state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  const uint64_t bits = uint64_t{8} * bytes.size();
+  for (; bytes.size() >= kBlock; bytes.remove_prefix(kBlock)) {
+    AddBlock(bytes.substr(0, kBlock), &state);
+  }
+  // A one, zeros, and the number of bits fill up the last block, or else one more.
+  std::string rest = std::string(bytes) + '\x80';
+  rest.resize(rest.size() + 8 <= kBlock ? kBlock - 8 : 2 * kBlock - 8, '\0');
+  rest += BigEndian(bits, 8);
+  for (size_t begin = 0; begin < rest.size(); begin += kBlock) {
+    AddBlock(std::string_view{rest}.substr(begin, kBlock), &state);
+  }
+  std::string hash;
+  for (const uint32_t word : state) hash += BigEndian(word, 4);
+  return hash;
+}
+
+}  // namespace trilobe
