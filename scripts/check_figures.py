@@ -60,18 +60,21 @@ NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
 FILES = ["docs/figures.txt", "experiments/*/figures.txt"]
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
 # Sources that decide how a fit of a table comes out. Left out are sampling by renderers, flags that change a
-# measurement, reports on it, and readers of samples on no grid.
+# measurement, reports on it, and readers of samples on no grid, by the names of folders before and after they were joined.
+CORRUPTION = ("corruption.cc", "kinds*", "misaligned.cc", "readings*")
 FITS = ["src/model", "src/solvers", "src/fit",
         *(f":(exclude)src/model/{name}" for name in
-          ("corruption", "evaluate/*bsdf*", "evaluate/half_vector_table*", "evaluate/cover_spikes*",
-           "measurement/*symptom*", "measurement/unmeasured*", "measurement/measurement.cc")),
+          ("corruption", *(f"measurement/{of}" for of in CORRUPTION), "evaluate/*bsdf*", "evaluate/half_vector_table*",
+           "evaluate/cover_spikes*", "*bsdf*", "half_vector_table*", "cover_spikes*", "measurement/*symptom*",
+           "measurement/unmeasured*", "measurement/measurement.cc", "measurement/merl_bins.cc")),
         *(f":(exclude)src/fit/{name}" for name in
           ("guess_error*", "scene", "reports", "study", "export", "open_pbr"))]
 # Steps after the solver, which raw fits do without, and so do these programs.
 FINISH = [f":(exclude)src/fit/{name}" for name in ("finish", "finish_fit.cc", "held_out*", "prune")]
 UNFINISHED = ("awls_equality", "random_starts", "stiff")
 # Further sources that these experiments depend on.
-ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
+EVALUATED = ["src/model/evaluate", *(f"src/model/{name}" for name in ("*bsdf*", "half_vector*", "cover_*", "sampling_*"))]
+ALSO = {"sampling": EVALUATED, "appearance": EVALUATED, "cloths": EVALUATED,
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
         "robustness": ["src/model/measurement", "src/model/corruption"], "scene": ["src/fit/scene"],
         "reads": ["src/fit/scene"]}

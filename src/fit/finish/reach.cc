@@ -9,7 +9,7 @@
 namespace trilobe {
 namespace {
 
-constexpr size_t kLookedAt = 50000;
+constexpr size_t kDirections = 50000;
 
 // The digits of n in a base, mirrored at the point: n = 1, 2, ... are Halton's sequence in a
 // dimension whose base is a prime of its own (Halton 1960).
@@ -83,7 +83,7 @@ double LargestValue(const BrdfSamples& samples) {
 std::vector<SphericalAngles> DirectionsAbove(double value, double max_theta,
                                              const FactorModel& model, int num_threads) {
   const std::vector<SphericalAngles> pairs =
-      DirectionsBetween(max_theta, kLookedAt, Spread::kRetroreflectionToo);
+      DirectionsBetween(max_theta, kDirections, Spread::kRetroreflectionToo);
   const std::vector<double> largest = LargestChannels(pairs, model, num_threads);
   std::vector<SphericalAngles> above;
   for (size_t k = 0; k < pairs.size(); ++k) {
@@ -98,7 +98,7 @@ Reach ReachOf(const BrdfSamples& samples, const FactorModel& model, int num_thre
   if (!(measured > 0)) return reach;
   for (const double max_theta : {reach.max_theta, farthest}) {
     const std::vector<SphericalAngles> pairs =
-        DirectionsBetween(max_theta, kLookedAt, Spread::kRetroreflectionToo);
+        DirectionsBetween(max_theta, kDirections, Spread::kRetroreflectionToo);
     const std::vector<double> largest = LargestChannels(pairs, model, num_threads);
     for (size_t k = 0; k < pairs.size(); ++k) {
       const bool within = std::max(pairs[k].theta_i, pairs[k].theta_o) <= reach.max_theta;

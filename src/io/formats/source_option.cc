@@ -107,7 +107,9 @@ void SetDataSeed(std::string_view text, SourceOptions* options) {
 bool IsSynth(std::string_view reader, const Measurement& /*measurement*/) {
   return reader == "synth:";
 }
-bool IsText(std::string_view reader, const Measurement& /*measurement*/) { return reader == "csv"; }
+bool IsTextTable(std::string_view reader, const Measurement& /*measurement*/) {
+  return reader == "csv";
+}
 
 // -1 stands for no angle.
 bool IsAngleOrNone(double degrees) { return degrees == -1 || (degrees >= 0 && degrees < 90); }
@@ -207,12 +209,12 @@ std::vector<SourceOption> MakeOptions() {
                    "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
                    "wavelength, and - for a column to leave out (docs/file-formats.md)",
            .of = "--columns is of text tables",
-           .applies = IsText}),
+           .applies = IsTextTable}),
       Option<"theta_i", &Options::theta_i_deg>(
           {.help = "angle of incidence of all samples of a text table without a column theta_i",
            .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},
            .of = "--theta_i is of text tables",
-           .applies = IsText}),
+           .applies = IsTextTable}),
       Option<"bands", &Options::bands>(
           {.help = "wavelengths of spectra to read, in nm: one, as 550, for all channels; three, "
                    "as 650,550,450, as r, g and b, the longest as r; or more, to make a colour of; "

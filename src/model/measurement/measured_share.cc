@@ -35,7 +35,7 @@ constexpr double kReach = DegreesToRadians(7.5), kReachOfAzimuth = DegreesToRadi
 constexpr int kCells = 12;  // of 7.5 degrees, so that what is within reach is in a cell beside
 
 // The angle between two azimuths, 0 to pi.
-double Between(double phi_1, double phi_2) {
+double AzimuthBetween(double phi_1, double phi_2) {
   return std::abs(std::remainder(phi_1 - phi_2, 2 * kPi));
 }
 
@@ -44,7 +44,7 @@ class Reached {
  public:
   explicit Reached(const std::vector<SphericalAngles>& directions) {
     for (const SphericalAngles& at : directions) {
-      const double phi = Between(at.phi_o, at.phi_i);
+      const double phi = AzimuthBetween(at.phi_o, at.phi_i);
       Cell(CellOf(at.theta_i), CellOf(at.theta_o)).push_back({at.theta_i, at.theta_o, phi});
       Cell(CellOf(at.theta_o), CellOf(at.theta_i)).push_back({at.theta_o, at.theta_i, phi});
     }

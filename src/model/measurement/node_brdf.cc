@@ -12,7 +12,7 @@
 namespace trilobe {
 namespace {
 
-constexpr double kAngleRounding = 1e-9;  // [rad], of degrees that became radians
+constexpr double kRadianRounding = 1e-9;  // [rad], of degrees that became radians
 
 Between BetweenThetas(const HemisphereGrid& grid, double theta) {
   if (std::isnan(theta)) throw Error("a direction or an angle is not a number");
@@ -128,7 +128,7 @@ Rgb NodeBrdf::operator()(const SphericalAngles& at) const {
 }
 
 bool NodeBrdf::Measured(const SphericalAngles& at) const {
-  return std::max(at.theta_i, at.theta_o) <= table_.max_theta + kAngleRounding &&
+  return std::max(at.theta_i, at.theta_o) <= table_.max_theta + kRadianRounding &&
          table_.present[IndexOf(table_.grid, NearestNode(table_.grid, at.theta_i, at.phi_i),
                                 NearestNode(table_.grid, at.theta_o, at.phi_o))];
 }

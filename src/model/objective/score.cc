@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-constexpr int kChunk = 1 << 14;
+constexpr int kPart = 1 << 14;
 constexpr size_t kWorst = 10;
 constexpr double kRelativeErrorFloor = 1e-3;  // [1/sr]
 
@@ -96,10 +96,10 @@ ScoreReport ScoreModel(const Objective& objective, const FactorModel& model) {
 
 double MeanLogError(const BrdfSamples& samples, const FactorModel& model, int num_threads) {
   const std::vector<Rgb> fitted = EvaluateSamples(model, samples, num_threads);
-  std::vector<double> parts((samples.size() + kChunk - 1) / kChunk);
+  std::vector<double> parts((samples.size() + kPart - 1) / kPart);
   ParallelFor(static_cast<int>(parts.size()), num_threads, [&](int i) {
-    const int end = std::min(samples.size(), (i + 1) * kChunk);
-    for (int j = i * kChunk; j < end; ++j) {
+    const int end = std::min(samples.size(), (i + 1) * kPart);
+    for (int j = i * kPart; j < end; ++j) {
       const double cos_i = samples.CosinesOf(j).i;
       for (int c = 0; c < kChannels; ++c) {
         parts[i] += LogError(fitted[j][c], samples.rho[j][c], cos_i);
@@ -121,10 +121,10 @@ ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitt
   // Squares are summed in units of the peak, which keeps those of huge and tiny data in range.
   const double unit = report.psnr_peak > 0 ? report.psnr_peak : 1;
 
-  std::vector<Sums> parts((samples.size() + kChunk - 1) / kChunk);
+  std::vector<Sums> parts((samples.size() + kPart - 1) / kPart);
   ParallelFor(static_cast<int>(parts.size()), objective.num_threads(), [&](int i) {
-    const int end = std::min(samples.size(), (i + 1) * kChunk);
-    parts[i] = SumRange(objective, fitted, i * kChunk, end, unit);
+    const int end = std::min(samples.size(), (i + 1) * kPart);
+    parts[i] = SumRange(objective, fitted, i * kPart, end, unit);
   });
   Sums sums;
   for (const Sums& part : parts) sums.Add(part);

@@ -23,8 +23,8 @@ double Place(Factor factor, double theta) {
 
 constexpr double kInitialDamping = 1e-3;  // against the diagonal of H
 constexpr double kMinDamping = 1e-7, kMaxDamping = 1e8;
-constexpr double kMaxFall = 1.0 / 3;  // of the damping after one step
-constexpr double kMinGain = 1e-4;
+constexpr double kMaxDampingFall = 1.0 / 3;  // of the damping after one step
+constexpr double kMinGainRatio = 1e-4;
 // No parameter changes by more than a factor of e^1.5 in one step.
 constexpr double kMaxMove = 1.5;
 // Parameters below kFloor times the largest of their kind are lifted as zeros are; a lift moves the
@@ -283,13 +283,13 @@ bool LogStepper::Step() {
   const double roughness = roughness_(y);
   const double before = minimised(), after = E + stiffness_ * energy_ * roughness + added;
   const double gain = (before - after) / (2 * decrease);
-  if (!(after < before && (gain > kMinGain || !(decrease > 0)))) {
+  if (!(after < before && (gain > kMinGainRatio || !(decrease > 0)))) {
     damping_ *= growth_;
     growth_ *= 2;
     return false;
   }
   const double f = 2 * std::clamp(gain, 0.0, 1.0) - 1;
-  damping_ = std::max(kMinDamping, damping_ * std::max(kMaxFall, 1 - f * f * f));
+  damping_ = std::max(kMinDamping, damping_ * std::max(kMaxDampingFall, 1 - f * f * f));
   growth_ = 2;
   current_ = std::move(trial);
   y_ = std::move(y);

@@ -12,7 +12,7 @@
 namespace trilobe {
 namespace {
 
-constexpr int kBatch = SampleLookups::kBatch;
+constexpr int kAtOnce = SampleLookups::kBatch;
 constexpr int kMostTables = kChannels * kMaxLobes;
 // Tables of one channel have products with each other, those of different channels have none.
 constexpr int kMostPairs = kChannels * kMaxLobes * (kMaxLobes + 1) / 2;
@@ -54,7 +54,7 @@ struct SpreadJob {
   const uint16_t* cell;                                 // [size]
   std::array<const double*, Stencil::kMaxSize> weight;  // [size]
   int tables, table_lanes, pairs, pair_lanes, pairs_in_cell;
-  const double *slopes, *products;  // [tables or pairs][kBatch]
+  const double *slopes, *products;  // [tables or pairs][kAtOnce]
   double *of_entries, *of_cells;
 };
 
@@ -63,8 +63,8 @@ void Spread(const SpreadJob& job) {
   alignas(sizeof(Lanes8)) double slope[PaddedToVectors(kMostTables)] = {};
   alignas(sizeof(Lanes8)) double product[PaddedToVectors(kMostPairs)] = {};
   for (int n = 0; n < job.size; ++n) {
-    for (int t = 0; t < job.tables; ++t) slope[t] = job.slopes[t * kBatch + n];
-    for (int p = 0; p < job.pairs; ++p) product[p] = job.products[p * kBatch + n];
+    for (int t = 0; t < job.tables; ++t) slope[t] = job.slopes[t * kAtOnce + n];
+    for (int p = 0; p < job.pairs; ++p) product[p] = job.products[p * kAtOnce + n];
     const Cell& cell = job.cells[job.cell[n]];
     double* target =
         job.of_cells + static_cast<ptrdiff_t>(job.cell[n]) * job.pairs_in_cell * job.pair_lanes;
@@ -129,8 +129,8 @@ void BlockEquations::Accumulate(const FactorModel& model) {
     const int64_t size = lookups_.samples().size();
     const int last = static_cast<int>(size * (k + 1) / count);
     SampleLookups::Batch batch(lookups_.spec(), kind_);
-    for (int begin = static_cast<int>(size * k / count); begin < last; begin += kBatch) {
-      const int end = std::min(begin + kBatch, last);
+    for (int begin = static_cast<int>(size * k / count); begin < last; begin += kAtOnce) {
+      const int end = std::min(begin + kAtOnce, last);
       lookups_.Evaluate(begin, end, model, &batch);
       if (kind_ == ParameterKind::kAmplitudes) {
         AddAmplitudes(begin, end, batch, &sums);
@@ -151,7 +151,7 @@ void BlockEquations::AddAmplitudes(int begin, int end, const SampleLookups::Batc
     const double* const w = &lookups_.samples().weight[c][begin];
     for (int t = 0; t < tables(); ++t) {
       (*sums)[c * table_lanes_ + t] +=
-          SumOfProducts(size, w, &batch.residual[c * kBatch], batch.Slope(c, t));
+          SumOfProducts(size, w, &batch.residual[c * kAtOnce], batch.Slope(c, t));
     }
     double* const of_cell = &(*sums)[InCell(c, 0, 0)];
     for (size_t p = 0; p < pairs_.size(); ++p) {
@@ -165,17 +165,17 @@ void BlockEquations::AddBatch(int begin, int end, const SampleLookups::Batch& ba
                               std::vector<double>* sums) const {
   const FoldedSamples& samples = lookups_.samples();
   const int size = end - begin;
-  std::array<double, kMostTables * kBatch> slopes;
-  std::array<double, kMostPairs * kBatch> products;
-  std::fill_n(slopes.begin(), tables() * kBatch, 0.0);
-  std::fill_n(products.begin(), pairs_.size() * kBatch, 0.0);
+  std::array<double, kMostTables * kAtOnce> slopes;
+  std::array<double, kMostPairs * kAtOnce> products;
+  std::fill_n(slopes.begin(), tables() * kAtOnce, 0.0);
+  std::fill_n(products.begin(), pairs_.size() * kAtOnce, 0.0);
   for (size_t p = 0; p < pairs_.size(); ++p) {
     const auto& [t, u, channels] = pairs_[p];
     for (int c = channels.begin; c < channels.end; ++c) {
       const double* const w = &samples.weight[c][begin];
       const double* const slope = batch.Slope(c, first_ + t);
-      AddProducts(size, w, slope, batch.Slope(c, first_ + u), &products[p * kBatch]);
-      if (t == u) AddProducts(size, w, &batch.residual[c * kBatch], slope, &slopes[t * kBatch]);
+      AddProducts(size, w, slope, batch.Slope(c, first_ + u), &products[p * kAtOnce]);
+      if (t == u) AddProducts(size, w, &batch.residual[c * kAtOnce], slope, &slopes[t * kAtOnce]);
     }
   }
   const int lookup =
