@@ -131,7 +131,7 @@ ModelSpec ModelSpec::MadeUp(const MerlGrid& grid) {
     tree.after("include/trilobe/fit/form.h", r"kIndependent,[^\n]*\n", "    kMadeUp,\n")
     tree.after("src/fit/form.cc", r"ModelSpec spec = (?=independent)",
                "options.kind == Kind::kMadeUp ? ModelSpec::MadeUp(grid) : ")
-    tree.after("src/app/model_flags.cc", r'\{"independent", Kind::kIndependent\},', '\n{"made_up", Kind::kMadeUp},')
+    tree.after("src/fit/form.cc", r'\{"independent", Kind::kIndependent,[^}]*\},', '\n{"made_up", Kind::kMadeUp, "two lobes"},')
 
 
 def weighting(tree):

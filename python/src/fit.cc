@@ -101,24 +101,8 @@ std::optional<T> MaybeOf(const nb::dict& options, const char* name, const char* 
 }  // namespace
 
 FormOptions FormOf(const nb::dict& options) {
-  using Kind = FormOptions::Kind;
-  const auto model = OptionOf<std::string>(options, "model", "a name");
-  const std::vector<std::pair<std::string, Kind>> kinds = {{"shared", Kind::kShared},
-                                                           {"isotropic", Kind::kIsotropic},
-                                                           {"anisotropic", Kind::kAnisotropic},
-                                                           {"independent", Kind::kIndependent},
-                                                           {"auto", Kind::kShared}};
-  FormOptions form;
-  bool known = false;
-  for (const auto& [name, kind] : kinds) {
-    if (name != model) continue;
-    form.kind = kind;
-    known = true;
-  }
-  if (!known) {
-    throw Error("unknown model '" + model +
-                "'; known: shared, isotropic, anisotropic, independent, auto");
-  }
+  const NamedForm& named = FindForm(OptionOf<std::string>(options, "model", "a name"));
+  FormOptions form{.kind = named.kind};
   form.lobes = MaybeOf<int>(options, "lobes", "an integer");
   std::vector<Stretch> stretches;
   for (const auto& [along, across] : OptionOf<std::vector<std::pair<double, double>>>(
@@ -126,7 +110,7 @@ FormOptions FormOf(const nb::dict& options) {
     stretches.push_back({.along = along, .across = across});
   }
   if (!stretches.empty()) form.stretches = Stretches(stretches);
-  const size_t lobes = form.kind == Kind::kIndependent ? 1 : form.lobes.value_or(3);
+  const size_t lobes = named.lobes.value_or(form.lobes.value_or(3));
   if (stretches.size() > 1 && stretches.size() != lobes) {
     throw Error("stretch has " + std::to_string(stretches.size()) + " pairs for " +
                 std::to_string(lobes) + " lobes; give one, or one a lobe");

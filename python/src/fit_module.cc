@@ -6,6 +6,7 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include "core/files/own_mark.h"
 #include "io/formats/source_option.h"
+#include "trilobe/fit/form.h"
 #include "trilobe/io/formats/source.h"
 
 namespace nb = nanobind;
@@ -110,6 +112,14 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
       nullptr);
   m.def("source_options", SourceOptionDefaults,
         nb::sig("def source_options() -> dict[str, object]"));
+  m.def(
+      "form_names",
+      [] {
+        std::vector<std::string> names;
+        for (const NamedForm& form : NamedForms()) names.push_back(form.name);
+        return names;
+      },
+      nb::sig("def form_names() -> list[str]"));
   m.def("says_own", [](const nb::bytes& content) {
     return SaysOwn({static_cast<const char*>(content.data()), content.size()});
   });

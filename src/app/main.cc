@@ -20,6 +20,7 @@
 
 #include "app/command.h"
 #include "app/flags.h"
+#include "app/model_flags.h"
 #include "app/solver_flags.h"
 #include "core/base/names.h"
 #include "trilobe/core/base/error.h"
@@ -288,6 +289,7 @@ void OccupyStandardStreams() {
 // `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both.
 int Main(int argc, char** argv) {
   DefineSourceFlags();
+  DefineModelFlag();
   DefineSolverFlags();
   CommandLine line = ReadCommandLine(argc, argv);
   TakeOtherNames(&line);

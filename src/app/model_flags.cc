@@ -3,10 +3,10 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "app/flags.h"
@@ -14,12 +14,6 @@
 #include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"
 
-DEFINE_string(model, "shared",
-              "form of the model. shared: D and G shared by the channels, F by the lobes (Peng et "
-              "al.), anisotropic if the measurement is, else isotropic; isotropic: the same, "
-              "isotropic for any measurement; anisotropic: on the nodes of the paper and without a "
-              "prior; independent: one lobe, nothing shared (Bagher et al.); auto: the form that "
-              "looks best within --max_parameters (docs/forms.md)");
 DEFINE_string(
     d_nodes, "",
     "nodes of D of an anisotropic model: theta_h by phi_h, theta_h at even steps, or with "
@@ -96,20 +90,22 @@ Stretches StretchesFromFlags(int lobes) {
   return Stretches(of_lobes);
 }
 
+const std::string& ModelFlag() { return std::get<std::string>(FlagValue("model")); }
+
 }  // namespace
 
-FormOptions FormFromFlags() {
-  using Kind = FormOptions::Kind;
-  const std::map<std::string, Kind> kinds = {{"shared", Kind::kShared},
-                                             {"isotropic", Kind::kIsotropic},
-                                             {"anisotropic", Kind::kAnisotropic},
-                                             {"independent", Kind::kIndependent},
-                                             {"auto", Kind::kShared}};
-  const auto kind = kinds.find(FLAGS_model);
-  if (kind == kinds.end()) {
-    throw Error("unknown model '" + FLAGS_model +
-                "'; known: shared, isotropic, anisotropic, independent, auto");
+void DefineModelFlag() {
+  std::string help = "form of the model";
+  const char* separator = ". ";
+  for (const NamedForm& form : NamedForms()) {
+    help += separator + form.name + ": " + form.description;
+    separator = "; ";
   }
+  DefineFlag("model", help, std::string("shared"));
+}
+
+FormOptions FormFromFlags() {
+  const NamedForm& named = FindForm(ModelFlag());
   if (FLAGS_nodes != "given" && FLAGS_nodes != "held_out") {
     throw Error("unknown --nodes=" + FLAGS_nodes + "; known: given, held_out");
   }
@@ -118,9 +114,9 @@ FormOptions FormFromFlags() {
       throw Error("--nodes=held_out chooses the nodes; leave out --" + std::string(flag));
     }
   }
-  FormOptions form{.kind = kind->second, .nodes_by_held_out = FLAGS_nodes == "held_out"};
+  FormOptions form{.kind = named.kind, .nodes_by_held_out = FLAGS_nodes == "held_out"};
   if (!IsDefault("lobes")) form.lobes = FLAGS_lobes;
-  form.stretches = StretchesFromFlags(form.kind == Kind::kIndependent ? 1 : FLAGS_lobes);
+  form.stretches = StretchesFromFlags(named.lobes.value_or(FLAGS_lobes));
   if (!FLAGS_d_nodes.empty()) form.d_nodes = ParseNodes("d_nodes", FLAGS_d_nodes, true);
   if (!FLAGS_g_nodes.empty()) form.g_nodes = ParseNodes("g_nodes", FLAGS_g_nodes, false);
   if (!IsDefault("f_bins")) form.f_bins = FLAGS_f_bins;
@@ -133,7 +129,7 @@ bool ModelIsGiven() {
                              [](const std::string& flag) { return !IsDefault(flag); });
 }
 
-bool ChoosesModel() { return FLAGS_model == "auto"; }
+bool ChoosesModel() { return FindForm(ModelFlag()).chosen; }
 
 std::vector<std::string> ModelFlags() {
   return {"model", "lobes", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes"};

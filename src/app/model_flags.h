@@ -9,6 +9,9 @@
 
 namespace trilobe {
 
+// Defines --model, by NamedForms(). Call it before the command line is read.
+void DefineModelFlag();
+
 // The form by --model, --lobes, --stretch, --d_nodes, --f_bins, --g_nodes and --nodes. Throws Error
 // for values that are invalid for every measurement.
 FormOptions FormFromFlags();

@@ -3,6 +3,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/names.h"
 #include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"
 
@@ -51,6 +52,21 @@ ModelSpec IsotropicSpec(const FormOptions& options, const MerlGrid& grid, int g_
 }
 
 }  // namespace
+
+const std::vector<NamedForm>& NamedForms() {
+  static const std::vector<NamedForm> forms = {
+      {"shared", Kind::kShared,
+       "D and G shared by the channels, F by the lobes (Peng et al.), anisotropic if the "
+       "measurement is, else isotropic"},
+      {"isotropic", Kind::kIsotropic, "the same, isotropic for any measurement"},
+      {"anisotropic", Kind::kAnisotropic, "on the nodes of the paper and without a prior"},
+      {"independent", Kind::kIndependent, "one lobe, nothing shared (Bagher et al.)", 1},
+      {"auto", Kind::kShared, "the form that looks best within --max_parameters (docs/forms.md)",
+       std::nullopt, true}};
+  return forms;
+}
+
+const NamedForm& FindForm(std::string_view name) { return FindNamed("model", name, NamedForms()); }
 
 void CheckForm(const FormOptions& options) {
   if (options.kind == Kind::kAnisotropic || options.kind == Kind::kShared) {

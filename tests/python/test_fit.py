@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+import typing
 
 import numpy as np
 import pytest
@@ -125,6 +126,10 @@ def test_read_has_the_options_of_the_program():
         if default is not False:
             with pytest.raises(trilobe.Error, match=name.replace("data_", "")):
                 trilobe.read(SMALL, **{"seed" if name == "data_seed" else name: object()})
+
+
+def test_models_have_the_names_of_the_program():
+    assert list(typing.get_args(trilobe._fitting.options.Form)) == trilobe._fitting.extension.fits().form_names()
 
 
 def test_takes_out_the_tilt_that_the_highlight_shows():

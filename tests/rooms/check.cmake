@@ -30,8 +30,8 @@ function(expect_failure file text message)
   endif()
 endfunction()
 
-expect_failure(core/base/stencil.h "#include \"trilobe/core/base/channels.h\""
-               "core/base/stencil.h: #include \"trilobe/core/base/channels.h\", but the room math does not see geometry")
+expect_failure(core/base/stencil.h "#include \"trilobe/core/system/parallel.h\""
+               "core/base/stencil.h: #include \"trilobe/core/system/parallel.h\", but the room base does not see system")
 expect_failure(solvers/solver.cc "#include \"../files/file.h\""
                "solvers/solver.cc: write #include \"../files/file.h\" as \"trilobe/GROUP/ROOM/NAME.h\" or")
 expect_failure(solvers/solver.cc "#include \"solvers/solver.h\""
@@ -50,7 +50,7 @@ expect_failure(solvers/sums/parameter_kind.h "#include \"solvers/sums/accumulato
                "sums: accumulators, add_normal_equations, ")
 # The lists of registries count, too.
 expect_failure(solvers/solver.cc "#define TRILOBE_DECLARE(NAME) SolverEntry NAME##Entry();\n//  X(Auto)"
-               "solvers/solver.cc: AutoEntry(), but the room solvers does not see multistart")
+               "solvers/solver.cc: AutoEntry(), but the room solvers does not see starts")
 # docs/adding-a-solver.md keeps to them as it is typed.
 file(READ ${source_dir}/docs/adding-a-solver.md page)
 string(FIND "${page}" "```cpp\n" begin)

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trilobe/fit/finish/node_choice.h"
@@ -32,6 +33,18 @@ struct FormOptions {
   bool nodes_by_held_out = false;  // chooses nodes of D and G by ChooseNodes
 };
 
+// A value of --model, and of Python's `model`.
+struct NamedForm {
+  std::string name;
+  FormOptions::Kind kind;
+  std::string description;
+  std::optional<int> lobes = {};  // if there is no choice
+  bool chosen = false;  // the fit begins with this kind, and chooses another if it looks better
+};
+const std::vector<NamedForm>& NamedForms();
+// Throws Error, which lists the known names, for others.
+const NamedForm& FindForm(std::string_view name);
+
 // Throws Error for options that contradict each other.
 void CheckForm(const FormOptions& options);
 
@@ -41,7 +54,7 @@ void CheckForm(const FormOptions& options);
 // the measurement.
 ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, int num_samples);
 
-// The value of --model for a spec: "shared", "independent", "anisotropic" or "other".
+// The NamedForm that a spec has: "shared", "independent" or "anisotropic"; else "other".
 std::string ModelName(const ModelSpec& spec);
 
 // Candidates for ChooseNodes; empty without nodes_by_held_out. Throws Error for an isotropic spec.

@@ -15,7 +15,8 @@
 namespace trilobe {
 
 // E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
-// docs/objective.md), prepared for one spec and weighting. Immutable and thread-safe.
+// docs/objective.md), prepared for one spec and weighting. No function changes what others return;
+// all but OwnSamples and ReleaseFold, which free or copy what is shared, are thread-safe.
 //
 //   const Objective objective(ValidSamples(table), model.spec(), FindWeighting("compressive"));
 //   const double E = objective.Value(model), relative = E / objective.MeasuredEnergy();
