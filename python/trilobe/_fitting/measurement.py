@@ -252,6 +252,7 @@ def read(
     radiometry: str = "brdf",
     columns: str = "",
     theta_i: float = -1,
+    theta_o: float = -1,
     bands: float | str | Sequence[float] = "",
     threads: int = 0,
 ) -> Measurement:
@@ -277,6 +278,7 @@ def read(
         radiometry: quantity that a UTIA file stores: "brdf", "cosine", "srgb" or "dj_brdf".
         columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header.
         theta_i: angle of incidence of a text table without a column of it [degrees]; -1 for none.
+        theta_o: the same of the detector.
         bands: wavelengths of spectra to read [nm]: one for all channels, three as r, g and b, the longest as r, or
             more to make a colour of; by default all make a colour.
         threads: 0 for all cores.
@@ -301,6 +303,7 @@ def read(
         radiometry=radiometry,
         columns=columns,
         theta_i=theta_i,
+        theta_o=theta_o,
         bands=_text_of_bands(bands),
         threads=threads,
     )

@@ -285,14 +285,16 @@ std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,
   return text;
 }
 
-std::string AdviceOn(const std::vector<TableColumn>& columns, bool theta_i_is_given) {
+std::string AdviceOn(const std::vector<TableColumn>& columns, const GivenAngles& given) {
   const auto has = [&](auto is) {
     return std::ranges::any_of(columns, [&](const TableColumn& column) { return is(column.role); });
   };
   const bool has_theta_i =
-      theta_i_is_given || has([](ColumnRole role) { return role == ColumnRole::kThetaI; });
-  const bool has_theta_o = has(
-      [](ColumnRole role) { return role == ColumnRole::kThetaO || role == ColumnRole::kTheta; });
+      given.theta_i || has([](ColumnRole role) { return role == ColumnRole::kThetaI; }) ||
+      (given.theta_o && has([](ColumnRole role) { return role == ColumnRole::kTheta; }));
+  const bool has_theta_o = given.theta_o || has([](ColumnRole role) {
+                             return role == ColumnRole::kThetaO || role == ColumnRole::kTheta;
+                           });
   const bool from_mirror = has([](ColumnRole role) { return role == ColumnRole::kFromMirror; });
   if (has_theta_i && !has_theta_o && from_mirror &&
       has([](ColumnRole role) { return role == ColumnRole::kPhiO || role == ColumnRole::kPhi; })) {

@@ -8,9 +8,9 @@
 
 namespace trilobe {
 
-// Advice on a table that lacks columns of values, or of theta_i unless that is given, if these may
+// Advice on a table that lacks columns of values, or of angles that are not given, if these may
 // follow from another column. "": nothing is missing, or nothing is known of its columns.
-std::string AdviceOn(const std::vector<TableColumn>& columns, bool theta_i_is_given);
+std::string AdviceOn(const std::vector<TableColumn>& columns, const GivenAngles& given);
 
 // "--columns=theta_i,-,theta_o,f": the columns by their usual names, this one as f.
 std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,

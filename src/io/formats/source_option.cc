@@ -215,6 +215,12 @@ std::vector<SourceOption> MakeOptions() {
            .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},
            .of = "--theta_i is of text tables",
            .applies = IsTextTable}),
+      Option<"theta_o", &Options::theta_o_deg>(
+          {.help = "the same of a table without a column theta_o, as of a detector that stands "
+                   "still",
+           .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},
+           .of = "--theta_o is of text tables",
+           .applies = IsTextTable}),
       Option<"bands", &Options::bands>(
           {.help = "wavelengths of spectra to read, in nm: one, as 550, for all channels; three, "
                    "as 650,550,450, as r, g and b, the longest as r; or more, to make a colour of; "

@@ -250,8 +250,8 @@ class ColumnLayouter {
   ColumnLayouter(const TextLines& lines, const std::vector<TableColumn>& columns)
       : lines_(lines), layout_{.columns = columns}, is_read_(columns.size()) {}
 
-  ColumnLayout Lay(bool theta_i_is_given, bool prefers_bands) {
-    LayAngles(theta_i_is_given);
+  ColumnLayout Lay(const GivenAngles& given, bool prefers_bands) {
+    LayAngles(given);
     LayValues(prefers_bands);
     for (size_t k = 0; k < is_read_.size(); ++k) {
       if (!is_read_[k]) layout_.left_out.push_back(k);
@@ -287,21 +287,23 @@ class ColumnLayouter {
     lines_.Fail("the header has no column " + column + advice);
   }
 
-  void LayAngles(bool theta_i_is_given) {
+  void LayAngles(const GivenAngles& given) {
     constexpr Role kRoles[kAngles] = {Role::kThetaI, Role::kPhiI, Role::kThetaO, Role::kPhiO};
     for (int k = 0; k < kAngles; ++k) layout_.angles[k] = One(kRoles[k]);
     auto& [theta_i, phi_i, theta_o, phi_o] = layout_.angles;
-    if (!theta_i && !theta_i_is_given) {
+    if (!theta_i && !given.theta_i && given.theta_o) theta_i = One(Role::kTheta);
+    if (!theta_i && !given.theta_i) {
       FailWithout("theta_i", std::string("; --theta_i=DEGREES gives it, and --columns=") +
                                  kUsualColumns + " names columns");
     }
-    if (!theta_o) theta_o = One(Role::kTheta);
-    if (!theta_o && !phi_i && !phi_o && All(Role::kPhi).empty()) {
+    if (!theta_o && !given.theta_o) theta_o = One(Role::kTheta);
+    if (!theta_o && !given.theta_o && !phi_i && !phi_o && All(Role::kPhi).empty()) {
       theta_o = One(Role::kFromMirror);
       layout_.from_mirror = theta_o.has_value();
     }
-    if (!theta_o) {
-      FailWithout("theta_o", std::string("; --columns=") + kUsualColumns + " names columns");
+    if (!theta_o && !given.theta_o) {
+      FailWithout("theta_o", std::string("; --theta_o=DEGREES gives it, and --columns=") +
+                                 kUsualColumns + " names columns");
     }
     if (!phi_o && !phi_i) phi_o = One(Role::kPhi);
     if (!phi_o && phi_i) {
@@ -436,8 +438,8 @@ std::string LeftOutColumns(const ColumnLayout& layout) {
 }
 
 ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
-                      bool theta_i_is_given, bool prefers_bands) {
-  return ColumnLayouter(lines, columns).Lay(theta_i_is_given, prefers_bands);
+                      const GivenAngles& given, bool prefers_bands) {
+  return ColumnLayouter(lines, columns).Lay(given, prefers_bands);
 }
 
 }  // namespace trilobe

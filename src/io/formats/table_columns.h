@@ -76,12 +76,17 @@ struct ColumnLayout {
 std::vector<std::string> RenamedColumns(const ColumnLayout& layout);
 std::string LeftOutColumns(const ColumnLayout& layout);
 
+// Which angles have a value for all rows, and need no column.
+struct GivenAngles {
+  bool theta_i = false, theta_o = false;
+};
+
 // The layout of columns that the line of `lines` names; columns of wavelengths before others of
-// values if `prefers_bands`. theta_i may be missing if it is given,
-// phi_i if it is 0, and both azimuths in measurements in the plane of incidence. Throws Error, with
-// the line, if the columns do not tell the angles or values.
+// values if `prefers_bands`. Angles may be missing if they are given, phi_i if it is 0, and both
+// azimuths in measurements in the plane of incidence. Throws Error, with the line, if the columns
+// do not tell the angles or values.
 ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
-                      bool theta_i_is_given, bool prefers_bands = false);
+                      const GivenAngles& given, bool prefers_bands = false);
 
 }  // namespace trilobe
 

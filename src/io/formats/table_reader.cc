@@ -1,7 +1,6 @@
 #include "io/formats/table_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -11,72 +10,19 @@
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
+#include "io/formats/brighter_side.h"
 #include "io/formats/column_advice.h"
 #include "io/formats/matrix_table.h"
 #include "io/formats/spectra_of_rows.h"
 #include "io/formats/spectrum_bands.h"
 #include "io/formats/table_columns.h"
+#include "io/formats/table_head.h"
 #include "io/formats/table_lines.h"
 #include "io/formats/text_table.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
-
-TableHead HeadOf(std::string_view text, const std::string& source, const SourceOptions& options,
-                 bool theta_i_is_given) {
-  TableHead head{.lines = TextLines(text, source)};
-  if (!options.columns.empty()) {
-    std::vector<std::string> names;
-    for (const std::string_view name : SplitCells(options.columns)) names.emplace_back(name);
-    head = TableHeadBy(names, text, source);
-  } else if (auto found = FindTableHead(text, source, theta_i_is_given)) {
-    head = *std::move(found);
-  } else if (auto other = FindTableHead(text, source, /*theta_i_is_given=*/true)) {
-    head = *std::move(other);  // the layout says what is missing
-  } else {
-    if (!head.lines.Next()) {
-      throw Error(source + ": the file is empty; a table begins with a header row, as " +
-                  kUsualColumns);
-    }
-    while (head.lines.line().starts_with('%') && head.lines.Next()) {
-    }
-    if (LooksLikeRow(head.lines.line(), 2)) {
-      head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
-                      " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
-                      "columns of a matrix");
-    }
-    head.names = NamesOfFirstLine(head.lines.line());
-  }
-  return head;
-}
-
-// Samples of a plane, with signs: whether the samples near the mirror direction are brighter where
-// theta_i and theta_o have the same sign, or different ones.
-class BrighterSide {
- public:
-  void Add(double theta_i, double theta_o, const Rgb& rho) {
-    const double mean = Mean(rho);
-    if (!(std::abs(theta_i) < kPi / 2 && std::abs(theta_o) < kPi / 2) || !(mean >= 0)) return;
-    if (!std::isfinite(mean) || theta_o == 0) return;
-    const bool same = std::signbit(theta_i) == std::signbit(theta_o);
-    const bool near = std::abs(std::abs(theta_i) - std::abs(theta_o)) < DegreesToRadians(15);
-    for (const bool nearby : {false, near}) {
-      sum_[nearby][same] += mean;
-      ++count_[nearby][same];
-    }
-    seen_[same] = true;
-  }
-  bool both() const { return seen_[0] && seen_[1]; }
-  bool same() const {
-    const bool near = count_[1][0] > 0 && count_[1][1] > 0;
-    return sum_[near][1] * count_[near][0] >= sum_[near][0] * count_[near][1];
-  }
-
- private:
-  std::array<std::array<double, 2>, 2> sum_{}, count_{};  // [near the mirror direction][same sign]
-  std::array<bool, 2> seen_{};
-};
 
 class TableReader {
  public:
@@ -85,7 +31,9 @@ class TableReader {
         options_(options),
         given_theta_i_(options.theta_i_deg != -1 ? DegreesToRadians(options.theta_i_deg)
                                                  : ThetaIBeforeRows(text)),
-        head_(HeadOf(text, source, options, given_theta_i_.has_value())),
+        given_theta_o_(DegreesToRadians(std::max(options.theta_o_deg, 0.0))),
+        given_{.theta_i = given_theta_i_.has_value(), .theta_o = options.theta_o_deg != -1},
+        head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
         layout_(Layout()) {
     numbers_.resize(layout_.values.size());
     for (const std::optional<size_t>& angle : layout_.angles) {
@@ -106,10 +54,13 @@ class TableReader {
     }
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
-    if (options_.theta_i_deg != -1 && layout_.angles[kThetaI]) {
-      measurement.notes.emplace_back(
-          "--theta_i is of tables without a column theta_i, and changes nothing here");
-    }
+    const auto note_unread = [&](double given, Angle angle, const std::string& name) {
+      if (given == -1 || !layout_.angles[angle]) return;
+      measurement.notes.push_back("--" + name + " is of tables without a column " + name +
+                                  ", and changes nothing here");
+    };
+    note_unread(options_.theta_i_deg, kThetaI, "theta_i");
+    note_unread(options_.theta_o_deg, kThetaO, "theta_o");
     return measurement;
   }
 
@@ -122,10 +73,8 @@ class TableReader {
     GoToRows(&head_);
     std::vector<TableColumn> columns;
     for (const std::string& name : head_.names) columns.push_back(ColumnNamed(name));
-    if (const std::string advice = AdviceOn(columns, given_theta_i_.has_value()); !advice.empty()) {
-      header.Fail(advice);
-    }
-    return LayoutOf(header, columns, given_theta_i_.has_value(),
+    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) header.Fail(advice);
+    return LayoutOf(header, columns, given_,
                     /*prefers_bands=*/!options_.bands.empty());
   }
 
@@ -199,15 +148,20 @@ class TableReader {
     const std::vector<TableColumn>& columns = layout_.columns;
     if (cells_.size() == columns.size() + 1 && cells_.back().empty()) cells_.pop_back();
     const bool has_all_read = cells_.size() <= columns.size() && cells_.size() >= num_read_;
-    const std::optional<size_t> theta_o = layout_.angles[kThetaO];
     const auto is_number = [&](size_t column) {
       return ToNumber(cells_[column]) || DecimalCommaNumber(cells_[column]) ||
              OddNumber(cells_[column]);
     };
-    if (IsText(line) && !(has_all_read && is_number(*theta_o))) return false;
+    if (IsText(line) && !(has_all_read && is_number(TellingColumn()))) return false;
     if (!has_all_read) FailAsRow(lines);
     cells_.resize(columns.size());
     return true;
+  }
+
+  // A column that holds a number in each row.
+  size_t TellingColumn() const {
+    const auto& [theta_i, phi_i, theta_o, phi_o] = layout_.angles;
+    return theta_o ? *theta_o : theta_i ? *theta_i : layout_.values[0];
   }
 
   [[noreturn]] void FailAsRow(const TextLines& lines) const {
@@ -215,8 +169,8 @@ class TableReader {
     SplitRow(WithoutComment(lines.line()), head_.separator, &cells);
     const std::vector<TableColumn>& columns = layout_.columns;
     if (cells.size() == columns.size()) {
-      const size_t theta_o = *layout_.angles[kThetaO];
-      ReadNumber(lines, theta_o, columns[theta_o].name, cells[theta_o]);  // throws
+      const size_t telling = TellingColumn();
+      ReadNumber(lines, telling, columns[telling].name, cells[telling]);  // throws
     }
     lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
                "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
@@ -271,7 +225,7 @@ class TableReader {
   SphericalAngles Angles(const TextLines& lines, bool turned) {
     constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
     theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
-    theta_o_ = AngleOf(lines, kThetaO, kTheta, 0);
+    theta_o_ = AngleOf(lines, kThetaO, kTheta, given_theta_o_);
     if (layout_.from_mirror) theta_o_ += theta_i_;
     SphericalAngles at;
     at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
@@ -356,7 +310,9 @@ class TableReader {
 
   const std::string& source_;
   const SourceOptions& options_;
-  std::optional<double> given_theta_i_;   // [rad] by a flag, or above the rows
+  std::optional<double> given_theta_i_;  // [rad] by a flag, or above the rows
+  double given_theta_o_;                 // [rad] by a flag
+  GivenAngles given_;
   std::vector<std::string> first_names_;  // of the header, without units
   TableHead head_;
   ColumnLayout layout_;
@@ -399,6 +355,7 @@ std::string TableReader::Note(bool turned) const {
     say(has_blocks_, "theta_i by lines between the rows");
     say(!has_blocks_, "theta_i = " + Text(RadiansToDegrees(*given_theta_i_)) + " deg");
   }
+  say(!layout_.angles[kThetaO], "theta_o = " + Text(options_.theta_o_deg) + " deg");
   say(!layout_.angles[kPhiI], "phi_i = 0");
   const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
                                   : "theta_o > 0 on the side of the light";

@@ -61,7 +61,7 @@ std::vector<std::string> SplitNames(std::string_view line, char separator) {
 
 // Context in which names stand.
 struct Place {
-  bool in_comment, theta_i_is_given;
+  bool in_comment, theta_is_given;
 };
 
 // Number of names that are known; 0 if they are not those of a table. Prose contains some, too.
@@ -73,7 +73,7 @@ int NamesKnown(const std::vector<std::string>& names, char separator, const Plac
     known += role != ColumnRole::kOther ? 1 : 0;
     has_angle |= role == ColumnRole::kThetaI || role == ColumnRole::kThetaO ||
                  role == ColumnRole::kFromMirror ||
-                 (role == ColumnRole::kTheta && place.theta_i_is_given);
+                 (role == ColumnRole::kTheta && place.theta_is_given);
     has_value |= role >= ColumnRole::kRed && role <= ColumnRole::kBand;
   }
   const bool is_prose = (place.in_comment && !has_value) ||
@@ -183,7 +183,7 @@ std::vector<std::string> NamesOfFirstLine(std::string_view line) {
 }
 
 std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,
-                                       bool theta_i_is_given) {
+                                       bool theta_is_given) {
   std::optional<TableHead> head;  // in a comment
   TextLines lines(text, source);
   for (int before = 0; before < kMostLinesBefore && lines.NextWithComment();) {
@@ -191,7 +191,7 @@ std::optional<TableHead> FindTableHead(std::string_view text, const std::string&
     const std::string_view line =
         comment ? *comment : Trimmed(lines.line().substr(0, lines.line().find('#')));
     std::optional<Names> found;
-    if (!GivenAngleIn(line)) found = NamesIn(line, {comment.has_value(), theta_i_is_given});
+    if (!GivenAngleIn(line)) found = NamesIn(line, {comment.has_value(), theta_is_given});
     if (found) {
       // A column of indices may have no name.
       if (lines.whole_line().starts_with('\t')) found->names.insert(found->names.begin(), "");
@@ -212,7 +212,7 @@ std::optional<TableHead> FindTableHead(std::string_view text, const std::string&
 TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view text,
                       const std::string& source) {
   TableHead by_names{.lines = TextLines(text, source), .names = names};
-  if (const std::optional<TableHead> head = FindTableHead(text, source, /*theta_i_is_given=*/true);
+  if (const std::optional<TableHead> head = FindTableHead(text, source, /*theta_is_given=*/true);
       head && !head->in_comment) {
     by_names.lines = head->lines;
     by_names.lines_before = head->lines_before;

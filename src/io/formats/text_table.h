@@ -21,9 +21,9 @@ struct TableHead {
 };
 
 // Looks for the first line that names columns of angles and others, or for the last of comments
-// before the first row. None if there is none. "theta" alone is an angle if `theta_i_is_given`.
+// before the first row. None if there is none. "theta" alone is an angle if `theta_is_given`.
 std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,
-                                       bool theta_i_is_given);
+                                       bool theta_is_given);
 
 // The same for a table whose columns have these names, in the place of those of a header. Throws
 // Error if no line could be a row.

@@ -375,6 +375,32 @@ TEST(TextTable, AnglesThatHaveNoColumn) {
               HasSubstr("line 1: the header has no column theta_i; --theta_i=DEGREES gives it"));
 }
 
+TEST(TextTable, ADetectorMayStandStill) {
+  const SourceOptions at_45 = {.theta_o_deg = 45};
+  const Measurement given = Read("theta_i,phi_o,r,g,b\n20,180,1,2,3\n", at_45);
+  ExpectSameSamples(given, Read("theta_i,phi_i,theta_o,phi_o,r,g,b\n20,0,45,180,1,2,3\n"));
+  EXPECT_THAT(given.notes, ElementsAre("read as: degrees, theta_o = 45 deg, phi_i = 0, f in 1/sr"));
+  // An angle that the header does not tell is the other one; its signs are as those of theta_o.
+  for (const char* const name : {"theta_i", "angle", "theta"}) {
+    ExpectSameSamples(Read(std::string(name) + ";brdf\n20;1\n-20;0,5\n", at_45),
+                      Read("theta_i,phi_i,theta_o,phi_o,f\n20,0,45,180,1\n-20,0,45,180,0.5\n"));
+  }
+  EXPECT_THAT(Read(kPlain, at_45).notes,
+              ElementsAre(HasSubstr("--theta_o is of tables without a column theta_o")));
+  EXPECT_THAT(ReadError("theta_i,phi_o,r,g,b\n20,180,1,2,3\n"),
+              HasSubstr("line 1: the header has no column theta_o; --theta_o=DEGREES gives it"));
+  EXPECT_THAT(ReadError(kPlain, {.theta_o_deg = 90}), HasSubstr("--theta_o is 90"));
+}
+
+TEST(TextTable, BothAnglesMayBeGiven) {
+  const SourceOptions options = {.theta_i_deg = 10, .theta_o_deg = 45};
+  const Measurement given = Read("phi_o,f\n180,1\n90,2\n", options);
+  ExpectSameSamples(given, Read("theta_i,phi_i,theta_o,phi_o,f\n10,0,45,180,1\n10,0,45,90,2\n"));
+  EXPECT_THAT(Source("synth:felt@2x4").Read(options).notes,
+              ElementsAre(HasSubstr("--theta_i is of text tables"),
+                          HasSubstr("--theta_o is of text tables")));
+}
+
 TEST(TextTable, ColumnsMayBeNamed) {
   const std::string rows = kPlain.substr(kPlain.find('\n') + 1);
   ExpectPlain(rows, "columns by --columns, degrees, f in 1/sr",
