@@ -240,7 +240,7 @@ def read(
     missing: float = 0,
     corrupt: str = "",
     cosine: float | str = 0,
-    scale: float = 1,
+    scale: float = 0,
     azimuth: str = "from_light",
     tilt: float | str = 0,
     seed: int = 1,
@@ -264,7 +264,7 @@ def read(
         missing: the share of the samples that is left out at random.
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/your-data.md).
         cosine: takes cos theta_i to this power out of it; of cos theta_o as "o:1".
-        scale: a factor of all values, as 0.01 for percents.
+        scale: a factor of all values, as 0.01 for percents; 1 says that a reflectance is f in 1/sr. 0: none given.
         azimuth: "from_mirror" where phi_o of scattered samples is counted from the mirror direction.
         tilt: takes out by how much the sample leant towards azimuth 0 [degrees]; "auto" as the highlight of
             a table shows.

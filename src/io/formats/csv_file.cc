@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/files/file.h"
+#include "io/formats/column_layout.h"
 #include "io/formats/matrix_table.h"
-#include "io/formats/table_columns.h"
 #include "io/formats/table_reader.h"
 #include "io/formats/text_table.h"
 #include "trilobe/io/formats/measurement_format.h"

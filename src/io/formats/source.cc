@@ -221,7 +221,7 @@ void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   apply("tilt", -(options.tilt_deg ? *options.tilt_deg : ShownTilt(measurement)));
   apply("cosine", -options.cosine);
   apply("cosine_o", -options.cosine_o);
-  apply("scale", options.scale);
+  apply("scale", options.scale == 0 ? 1 : options.scale);
   Corrupt(corruptions, options.seed, options.num_threads, measurement);
   if (options.azimuth_from_mirror && !measurement->table) TurnAzimuths(measurement);
 }

@@ -152,8 +152,10 @@ std::vector<SourceOption> MakeOptions() {
        .set = SetCosine,
        .get = [](const Options& of) { return TextOf(of.cosine) + ",o:" + TextOf(of.cosine_o); }},
       Option<"scale", &Options::scale>(
-          {.help = "multiply all values by this: 0.01 for percents, 0.3183 for pi f",
-           .range = {"from 1e-6 to 1e6", [](double x) { return x >= 1e-6 && x <= 1e6; }},
+          {.help = "multiply all values by this: 0.01 for percents, 0.3183 for pi f, 1 for a "
+                   "reflectance that is f in 1/sr; 0: not given",
+           .range = {"from 1e-6 to 1e6, or 0 for none",
+                     [](double x) { return x == 0 || (x >= 1e-6 && x <= 1e6); }},
            .changes_values = true}),
       {.name = "azimuth",
        .help = "from_mirror: azimuths phi_o of scattered samples are counted from the mirror "

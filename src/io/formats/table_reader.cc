@@ -12,6 +12,7 @@
 #include "core/files/text_lines.h"
 #include "io/formats/brighter_side.h"
 #include "io/formats/column_advice.h"
+#include "io/formats/column_layout.h"
 #include "io/formats/matrix_table.h"
 #include "io/formats/spectra_of_rows.h"
 #include "io/formats/spectrum_bands.h"
@@ -19,6 +20,7 @@
 #include "io/formats/table_head.h"
 #include "io/formats/table_lines.h"
 #include "io/formats/text_table.h"
+#include "model/measurement/sample_symptoms.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
@@ -34,23 +36,30 @@ class TableReader {
         given_theta_o_(DegreesToRadians(std::max(options.theta_o_deg, 0.0))),
         given_{.theta_i = given_theta_i_.has_value(), .theta_o = options.theta_o_deg != -1},
         head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
+        header_(head_.lines),
         layout_(Layout()) {
     numbers_.resize(layout_.values.size());
     for (const std::optional<size_t>& angle : layout_.angles) {
       if (angle) num_read_ = std::max(num_read_, *angle + 1);
     }
     for (const size_t column : layout_.values) num_read_ = std::max(num_read_, column + 1);
-    if (layout_.wavelength) num_read_ = std::max(num_read_, *layout_.wavelength + 1);
+    for (const auto column : {layout_.wavelength, layout_.phase}) {
+      if (column) num_read_ = std::max(num_read_, *column + 1);
+    }
   }
 
   Measurement Read() {
     // Whether phi_o is that of the signs, turned by 180 degrees.
-    bool turned = !layout_.angles[kPhiO];
+    bool turned = !HasAzimuths();
     Measurement measurement = ReadRows(turned);
     by_brightness_ = in_plane_ && signed_ && brighter_.both() && !layout_.from_mirror;
     if (by_brightness_ && brighter_.same() != turned) {
       turned = brighter_.same();
       measurement = ReadRows(turned);
+    }
+    if (options_.scale == 0 && MayBeFactor(layout_, !options_.columns.empty())) {
+      header_.Fail(AdviceOnFactor(layout_.columns[layout_.values[0]].name,
+                                  MedianReflected(measurement.samples)));
     }
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
@@ -68,15 +77,16 @@ class TableReader {
   enum Angle { kThetaI, kPhiI, kThetaO, kPhiO };
 
   ColumnLayout Layout() {
-    const TextLines header = head_.lines;
     first_names_ = head_.names;
     GoToRows(&head_);
-    std::vector<TableColumn> columns;
-    for (const std::string& name : head_.names) columns.push_back(ColumnNamed(name));
-    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) header.Fail(advice);
-    return LayoutOf(header, columns, given_,
+    const std::vector<TableColumn> columns = ColumnsNamed(head_.names);
+    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) header_.Fail(advice);
+    return LayoutOf(header_, columns, given_,
                     /*prefers_bands=*/!options_.bands.empty());
   }
+
+  // Whether the phase gives one, too.
+  bool HasAzimuths() const { return layout_.angles[kPhiO] || layout_.phase; }
 
   Measurement ReadRows(bool turned) {
     SampleCollector collector(source_, "CSV file of scattered samples");
@@ -222,6 +232,28 @@ class TableReader {
     return -theta;
   }
 
+  // Of wo from that of wi, by cos g = cos theta_i cos theta_o + sin theta_i sin theta_o cos phi.
+  double AzimuthByPhase(const TextLines& lines) {
+    constexpr double kRounding = 2;  // degrees of three rounded angles
+    const size_t column = *layout_.phase;
+    const TableColumn& named = layout_.columns[column];
+    const double phase = ReadAngle(lines, column, named.name, Number(lines, column),
+                                   RadiansIn(named.unit).value_or(1), {-180, 180});
+    const double theta_i = std::abs(theta_i_), theta_o = std::abs(theta_o_);
+    const double least = RadiansToDegrees(std::abs(theta_i - theta_o));
+    const double most = RadiansToDegrees(std::min(theta_i + theta_o, 2 * kPi - theta_i - theta_o));
+    const double degrees = RadiansToDegrees(std::abs(phase));
+    if (degrees < least - kRounding || degrees > most + kRounding) {
+      lines.FailAt(column, named.name,
+                   Text(degrees) + " deg is no angle between these directions, which are " +
+                       Text(least) + " to " + Text(most) + " deg apart");
+    }
+    const double sines = std::sin(theta_i_) * std::sin(theta_o_);
+    if (std::abs(sines) < 1e-12) return 0;
+    const double cosine = (std::cos(phase) - std::cos(theta_i_) * std::cos(theta_o_)) / sines;
+    return std::acos(std::clamp(cosine, -1.0, 1.0));
+  }
+
   SphericalAngles Angles(const TextLines& lines, bool turned) {
     constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
     theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
@@ -229,9 +261,9 @@ class TableReader {
     if (layout_.from_mirror) theta_o_ += theta_i_;
     SphericalAngles at;
     at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
-    at.phi_o = AngleOf(lines, kPhiO, kPhi, 0);
+    at.phi_o = layout_.phase ? AzimuthByPhase(lines) : AngleOf(lines, kPhiO, kPhi, 0);
     signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
-    in_plane_ &= at.phi_i == at.phi_o;
+    in_plane_ &= at.phi_i == at.phi_o && !layout_.phase;
     if (!phi_i_) phi_i_ = at.phi_i;
     one_phi_i_ &= at.phi_i == *phi_i_;
     at.theta_i = Unsigned(theta_i_, &at.phi_i);
@@ -315,6 +347,7 @@ class TableReader {
   GivenAngles given_;
   std::vector<std::string> first_names_;  // of the header, without units
   TableHead head_;
+  TextLines header_;  // at its line
   ColumnLayout layout_;
   size_t num_read_ = 0;  // columns up to the last that is read
   std::vector<std::string_view> cells_;
@@ -359,7 +392,8 @@ std::string TableReader::Note(bool turned) const {
   say(!layout_.angles[kPhiI], "phi_i = 0");
   const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
                                   : "theta_o > 0 on the side of the light";
-  const bool by_side = (!layout_.angles[kPhiO] && !layout_.from_mirror) || by_brightness_;
+  const bool by_side = (!HasAzimuths() && !layout_.from_mirror) || by_brightness_;
+  say(layout_.phase.has_value(), "azimuths by the angle between the directions");
   say(layout_.from_mirror,
       "theta_o as theta_i and that angle, > 0 from the mirror direction away from the normal");
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));

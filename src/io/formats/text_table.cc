@@ -68,8 +68,8 @@ struct Place {
 int NamesKnown(const std::vector<std::string>& names, char separator, const Place& place) {
   int known = 0;
   bool has_angle = false, has_value = false;
-  for (const std::string& name : names) {
-    const ColumnRole role = ColumnNamed(name).role;
+  for (const TableColumn& column : ColumnsNamed(names)) {
+    const ColumnRole role = column.role;
     known += role != ColumnRole::kOther ? 1 : 0;
     has_angle |= role == ColumnRole::kThetaI || role == ColumnRole::kThetaO ||
                  role == ColumnRole::kFromMirror ||

@@ -203,10 +203,7 @@ std::string TellHighlight(const BrdfSamples& samples) {
 }
 
 std::string TellReflected(const BrdfSamples& samples) {
-  std::vector<double> albedos;
-  for (const ReflectedAtLeast& one : ReflectedLightOf(samples)) albedos.push_back(one.albedo);
-  const double of_all = albedos.empty() ? 0 : Quantile(&albedos, 0.5);
-  const double albedo = std::max(of_all, ReflectedLightOfScans(samples));
+  const double albedo = std::max(MedianReflected(samples), ReflectedLightOfScans(samples));
   if (!(albedo > 1.1)) return "";
   const std::string more = Sentence(
       "at least ", albedo, " times as much light comes back as fell (median of the incidences), ");
@@ -336,6 +333,12 @@ std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
     reflected.push_back({theta_i, ReflectedAlbedo(samples, numbers)});
   }
   return reflected;
+}
+
+double MedianReflected(const BrdfSamples& samples) {
+  std::vector<double> albedos;
+  for (const ReflectedAtLeast& one : ReflectedLightOf(samples)) albedos.push_back(one.albedo);
+  return albedos.empty() ? 0 : Quantile(&albedos, 0.5);
 }
 
 RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotropic) {

@@ -49,6 +49,8 @@ struct ReflectedAtLeast {
   double albedo = 0;   // mean over the channels
 };
 std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples);
+// The median over the incidences; 0 without.
+double MedianReflected(const BrdfSamples& samples);
 
 // The same where the plane of incidence was scanned on both sides: in rings about the normal or, if
 // that is more, about the mirror direction, as bright as the darker of the two places where the

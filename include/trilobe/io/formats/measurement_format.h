@@ -21,7 +21,9 @@ struct SourceOptions {
   std::string corrupt = {};  // corruptions to apply (ParseCorruptions), seeded by `seed`
   double cosine = 0;         // exponent of a factor cos theta_i to remove, -2 to 2
   double cosine_o = 0;       // the same of cos theta_o
-  double scale = 1;          // factor of all values, above 0
+  // Factor of all values; 0 stands for 1 that nobody gave: given, it says what values called
+  // reflectance are.
+  double scale = 0;
   // Azimuths phi_o of scattered samples are counted from the mirror direction, phi_i + 180 degrees.
   bool azimuth_from_mirror = false;
   // Tilt of the sample towards azimuth 0, to remove; nullopt: estimated from the highlight.
