@@ -132,7 +132,7 @@ const std::vector<SourceOptions>& TableOptions() {
       {.columns = "theta_o,-,f", .theta_i_deg = 30},
       {.columns = "theta_o/phi_o", .theta_i_deg = 30},
       {.columns = "theta_o/theta_i"},
-      {.theta_o_deg = 45},
+      {.columns = "theta_i=i,f=g", .theta_o_deg = 45},
       {.cosine = 1, .scale = 0.01, .azimuth_from_mirror = true, .outliers = true}};
   return options;
 }

@@ -276,7 +276,8 @@ def read(
         outliers: takes samples that are far off those around them, too.
         dark_noise: takes readings that are lost in dark noise as they are, not medians around them.
         radiometry: quantity that a UTIA file stores: "brdf", "cosine", "srgb" or "dj_brdf".
-        columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header.
+        columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header, or
+            "theta_i=Angle,f=Value" by the names there.
         theta_i: angle of incidence of a text table without a column of it [degrees]; -1 for none.
         theta_o: the same of the detector.
         bands: wavelengths of spectra to read [nm]: one for all channels, three as r, g and b, the longest as r, or

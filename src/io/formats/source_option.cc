@@ -209,7 +209,8 @@ std::vector<SourceOption> MakeOptions() {
       Option<"columns", &Options::columns>(
           {.help = "names of the columns of a text table, in the place of a header: "
                    "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
-                   "wavelength, and - for a column to leave out (docs/file-formats.md)",
+                   "wavelength, and - for a column to leave out; or theta_i=NAME,f=NAME by the "
+                   "names of its header (docs/file-formats.md)",
            .of = "--columns is of text tables",
            .applies = IsTextTable}),
       Option<"theta_i", &Options::theta_i_deg>(

@@ -79,8 +79,9 @@ class TableReader {
   ColumnLayout Layout() {
     first_names_ = head_.names;
     GoToRows(&head_);
-    const std::vector<TableColumn> columns = ColumnsNamed(head_.names);
+    const std::vector<TableColumn> columns = ColumnsOf(head_, header_, options_.columns);
     if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) header_.Fail(advice);
+    CheckNames(options_.columns);
     return LayoutOf(header_, columns, given_,
                     /*prefers_bands=*/!options_.bands.empty());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/formats/column_words.h"
 #include "io/formats/table_lines.h"
 #include "trilobe/core/base/error.h"
 
@@ -115,6 +116,16 @@ bool IsNumber(std::string_view cell) {
   return ToNumber(cell).has_value() || DecimalCommaNumber(cell).has_value();
 }
 
+// Whether a line of numbers above the rows says how many there are, and is none of them.
+bool IsLineOfCounts(std::string_view line, size_t cells_read) {
+  if (line.find_first_not_of("0123456789,;| \t") != std::string_view::npos) return false;
+  std::vector<std::string_view> cells;
+  return std::ranges::none_of(kSeparators, [&](char separator) {
+    SplitRow(line, separator, &cells);
+    return cells.size() >= cells_read;
+  });
+}
+
 }  // namespace
 
 void CheckLines(std::string_view text, const std::string& source) {
@@ -218,13 +229,56 @@ TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view te
     by_names.lines_before = head->lines_before;
     return by_names;
   }
+  size_t read = names.size();
+  while (read > 0 && (names[read - 1].empty() || names[read - 1] == "-")) --read;
   const size_t fewest = std::min(names.size(), kFewestNumbers);
   for (TextLines next = by_names.lines; next.Next() && by_names.lines_before < kMostLinesBefore;) {
-    if (LooksLikeRow(next.line(), fewest)) return by_names;
+    if (LooksLikeRow(next.line(), fewest) && !IsLineOfCounts(next.line(), read)) return by_names;
     by_names.lines = next;
     ++by_names.lines_before;
   }
   throw Error(source + ": no line holds numbers for --columns");
+}
+
+std::vector<size_t> PositionsOf(std::string_view name, const std::vector<std::string>& names) {
+  const std::string wanted = Plain(name);
+  std::vector<size_t> called, begun;
+  for (size_t k = 0; k < names.size(); ++k) {
+    std::string plain = Plain(names[k]);
+    if (plain == wanted) called.push_back(k);
+    TakeBracket(&plain);
+    if (Trimmed(plain) == wanted) begun.push_back(k);
+  }
+  return called.empty() ? begun : called;
+}
+
+TableHead TableHeadWith(const std::vector<std::string>& wanted, std::string_view text,
+                        const std::string& source) {
+  TextLines lines(text, source);
+  TableHead best{.lines = lines};
+  size_t most = 0;
+  for (int before = 0; before < kMostLinesBefore && lines.NextWithComment();) {
+    const std::optional<std::string_view> comment = CommentOf(lines.line());
+    const std::string_view line = comment ? *comment : lines.line();
+    const bool is_row = !comment && LooksLikeRow(line);  // a header of wavelengths may, too
+    for (const char separator : kSeparators) {
+      std::vector<std::string> names = SplitNames(line, separator);
+      const auto found = static_cast<size_t>(std::ranges::count_if(
+          wanted, [&](const std::string& name) { return !PositionsOf(name, names).empty(); }));
+      if (found <= most || (is_row && found < wanted.size())) continue;
+      most = found;
+      best = {.lines = lines,
+              .names = std::move(names),
+              .separator = separator,
+              .in_comment = comment.has_value(),
+              .lines_before = before};
+    }
+    if (most == wanted.size() || is_row) break;
+    if (!comment) ++before;
+  }
+  if (most > 0) return best;
+  throw Error(source + ": no line above the rows names a column '" + wanted.front() +
+              "', as --columns does");
 }
 
 void GoToRows(TableHead* head) {

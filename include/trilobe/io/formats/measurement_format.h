@@ -38,7 +38,8 @@ struct SourceOptions {
   bool outliers = false;            // keeps samples far from their neighbours
   bool dark_noise = false;          // keeps readings of a table that are lost in dark noise
   std::string radiometry = "brdf";  // of UtiaRadiometries()
-  // Names of the columns of a text table, "theta_i,theta_o,f", in the place of those of its header.
+  // Names of the columns of a text table, "theta_i,theta_o,f", in the place of those of its header,
+  // or some with these, "theta_i=Angle,f=Value".
   std::string columns = {};
   double theta_i_deg = -1;  // of a text table without a column theta_i, 0 to below 90; -1: none
   double theta_o_deg = -1;  // the same of theta_o
