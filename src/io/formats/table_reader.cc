@@ -1,11 +1,9 @@
 #include "io/formats/table_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <system_error>
 #include <vector>
 
 #include "core/base/text.h"
@@ -19,6 +17,7 @@
 #include "io/formats/table_columns.h"
 #include "io/formats/table_head.h"
 #include "io/formats/table_lines.h"
+#include "io/formats/table_row.h"
 #include "io/formats/text_table.h"
 #include "model/measurement/sample_symptoms.h"
 #include "trilobe/core/base/error.h"
@@ -37,15 +36,9 @@ class TableReader {
         given_{.theta_i = given_theta_i_.has_value(), .theta_o = options.theta_o_deg != -1},
         head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
         header_(head_.lines),
-        layout_(Layout()) {
+        layout_(Layout()),
+        row_(head_.separator, layout_) {
     numbers_.resize(layout_.values.size());
-    for (const std::optional<size_t>& angle : layout_.angles) {
-      if (angle) num_read_ = std::max(num_read_, *angle + 1);
-    }
-    for (const size_t column : layout_.values) num_read_ = std::max(num_read_, column + 1);
-    for (const auto column : {layout_.wavelength, layout_.phase}) {
-      if (column) num_read_ = std::max(num_read_, *column + 1);
-    }
   }
 
   Measurement Read() {
@@ -101,13 +94,13 @@ class TableReader {
     lines_after_ = 0;
     std::optional<TextLines> first_after;
     for (TextLines lines = head_.lines; lines.NextWithComment();) {
-      if (!TakeNumbers(lines.line()) && !TakeCells(lines)) {
+      if (!row_.Take(lines)) {
         if (IsBetween(lines)) continue;
         if (!first_after) first_after = lines;
         ++lines_after_;
         continue;
       }
-      if (first_after) FailAsRow(*first_after);  // it stands between rows
+      if (first_after) row_.FailAsRow(*first_after);  // it stands between rows
       const SphericalAngles angles = Angles(lines, turned);
       if (!Values(lines)) {
         if (!by_rows) collector.LeaveOut(&BinCounts::missing);
@@ -133,61 +126,6 @@ class TableReader {
     return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
   }
 
-  // Takes a row of numbers with a separator after each but the last, as nearly all rows are,
-  // without looking for its cells.
-  bool TakeNumbers(std::string_view line) {
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    is_numbers_ = false;
-    row_.resize(layout_.columns.size());
-    for (size_t k = 0; k < row_.size(); ++k) {
-      if (k > 0 && (at == end || *at++ != head_.separator)) return false;
-      const auto [after, error] = std::from_chars(at, end, row_[k]);
-      if (error != std::errc()) return false;
-      at = after;
-    }
-    is_numbers_ = at == end;
-    return is_numbers_;
-  }
-
-  // The same of any row; false for a line of text.
-  bool TakeCells(const TextLines& lines) {
-    const std::string_view line = WithoutComment(lines.line());
-    if (line.empty() || IsRule(line)) return false;
-    if (TakeNumbers(line)) return true;
-    SplitRow(line, head_.separator, &cells_);
-    const std::vector<TableColumn>& columns = layout_.columns;
-    if (cells_.size() == columns.size() + 1 && cells_.back().empty()) cells_.pop_back();
-    const bool has_all_read = cells_.size() <= columns.size() && cells_.size() >= num_read_;
-    const auto is_number = [&](size_t column) {
-      return ToNumber(cells_[column]) || DecimalCommaNumber(cells_[column]) ||
-             OddNumber(cells_[column]);
-    };
-    if (IsText(line) && !(has_all_read && is_number(TellingColumn()))) return false;
-    if (!has_all_read) FailAsRow(lines);
-    cells_.resize(columns.size());
-    return true;
-  }
-
-  // A column that holds a number in each row.
-  size_t TellingColumn() const {
-    const auto& [theta_i, phi_i, theta_o, phi_o] = layout_.angles;
-    return theta_o ? *theta_o : theta_i ? *theta_i : layout_.values[0];
-  }
-
-  [[noreturn]] void FailAsRow(const TextLines& lines) const {
-    std::vector<std::string_view> cells;
-    SplitRow(WithoutComment(lines.line()), head_.separator, &cells);
-    const std::vector<TableColumn>& columns = layout_.columns;
-    if (cells.size() == columns.size()) {
-      const size_t telling = TellingColumn();
-      ReadNumber(lines, telling, columns[telling].name, cells[telling]);  // throws
-    }
-    lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
-               "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
-               " to " + columns.back().name);
-  }
-
   // Whether a line may stand between rows: a comment, the header once more, or one that gives
   // theta_i or phi_i to the rows below.
   bool IsBetween(const TextLines& lines) {
@@ -207,22 +145,11 @@ class TableReader {
     return std::ranges::equal(cells, first_names_);
   }
 
-  double Number(const TextLines& lines, size_t column) {
-    if (is_numbers_) return row_[column];
-    if (const auto number = ToNumber(cells_[column])) return *number;
-    if (const auto number = DecimalCommaNumber(cells_[column])) {
-      decimal_commas_ = true;
-      return *number;
-    }
-    if (const auto number = OddNumber(cells_[column])) return *number;
-    lines.FailAt(column, layout_.columns[column].name, WhyNoNumber(cells_[column]));
-  }
-
   // [rad]; `missing` without a column.
   double AngleOf(const TextLines& lines, Angle angle, const AngleRange& range, double missing) {
     const std::optional<size_t> column = layout_.angles[angle];
     if (!column) return missing;
-    return ReadAngle(lines, *column, layout_.columns[*column].name, Number(lines, *column),
+    return ReadAngle(lines, *column, layout_.columns[*column].name, row_.Number(lines, *column),
                      layout_.units[angle], range);
   }
 
@@ -238,7 +165,7 @@ class TableReader {
     constexpr double kRounding = 2;  // degrees of three rounded angles
     const size_t column = *layout_.phase;
     const TableColumn& named = layout_.columns[column];
-    const double phase = ReadAngle(lines, column, named.name, Number(lines, column),
+    const double phase = ReadAngle(lines, column, named.name, row_.Number(lines, column),
                                    RadiansIn(named.unit).value_or(1), {-180, 180});
     const double theta_i = std::abs(theta_i_), theta_o = std::abs(theta_o_);
     const double least = RadiansToDegrees(std::abs(theta_i - theta_o));
@@ -262,7 +189,7 @@ class TableReader {
     if (layout_.from_mirror) theta_o_ += theta_i_;
     SphericalAngles at;
     at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
-    at.phi_o = layout_.phase ? AzimuthByPhase(lines) : AngleOf(lines, kPhiO, kPhi, 0);
+    at.phi_o = layout_.phase ? at.phi_i + AzimuthByPhase(lines) : AngleOf(lines, kPhiO, kPhi, 0);
     signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
     in_plane_ &= at.phi_i == at.phi_o && !layout_.phase;
     if (!phi_i_) phi_i_ = at.phi_i;
@@ -275,11 +202,11 @@ class TableReader {
 
   // Takes the values of the row; false where none was measured.
   bool Values(const TextLines& lines) {
-    const auto is_gap = [&](size_t column) { return !is_numbers_ && IsGap(cells_[column]); };
+    const auto is_gap = [&](size_t column) { return row_.IsGapAt(column); };
     if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
     for (size_t k = 0; k < numbers_.size(); ++k) {
       const size_t column = layout_.values[k];
-      numbers_[k] = Linear(layout_.columns[column].scale, Number(lines, column));
+      numbers_[k] = Linear(layout_.columns[column].scale, row_.Number(lines, column));
     }
     return true;
   }
@@ -302,7 +229,7 @@ class TableReader {
     constexpr double kShortest = 0.2, kLongest = 20;  // [um]
     const size_t column = *layout_.wavelength;
     const std::string& unit = layout_.columns[column].unit;
-    const double number = Number(lines, column);
+    const double number = row_.Number(lines, column);
     const bool micrometres =
         unit == "um" || (unit.empty() && number >= kShortest && number <= kLongest);
     return micrometres ? 1000 * number : number;
@@ -334,7 +261,7 @@ class TableReader {
   // Whether the table has the layout that this library writes, once the only one that it read.
   bool IsUsual() const {
     return head_.separator == ',' && !head_.in_comment && head_.lines_before == 0 &&
-           lines_after_ == 0 && options_.columns.empty() && !signed_ && !decimal_commas_ &&
+           lines_after_ == 0 && options_.columns.empty() && !signed_ && !row_.decimal_commas() &&
            layout_.HasAllAngles() &&
            std::ranges::all_of(layout_.columns, &TableColumn::is_usual_name);
   }
@@ -350,16 +277,12 @@ class TableReader {
   TableHead head_;
   TextLines header_;  // at its line
   ColumnLayout layout_;
-  size_t num_read_ = 0;  // columns up to the last that is read
-  std::vector<std::string_view> cells_;
-  std::vector<double> row_;  // in the place of cells, where a row is but numbers
-  bool is_numbers_ = false;
+  TableRow row_;
   std::vector<double> numbers_;               // the values of a row
   double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
   std::optional<double> phi_i_, wavelength_;  // of the first row
   std::optional<SpectrumBands> bands_;        // of spectra
   bool in_plane_ = true, signed_ = false, one_phi_i_ = true, by_brightness_ = false;
-  bool decimal_commas_ = false;
   double block_theta_i_ = 0, block_phi_i_ = 0;  // [rad] of rows that do not have them
   bool has_blocks_ = false;
   int lines_after_ = 0;  // of text, behind the rows
@@ -380,7 +303,7 @@ std::string TableReader::Note(bool turned) const {
   say(head_.separator == '\t', "tabs");
   say(head_.separator == '|', "bars");
   say(head_.separator == ' ', "blanks");
-  say(decimal_commas_, "decimal commas");
+  say(row_.decimal_commas(), "decimal commas");
   for (const std::string& renamed : RenamedColumns(layout_)) say(true, renamed);
   say(layout_.HasAnglesIn(kPi / 180), "degrees");
   say(layout_.HasAnglesIn(1), "radians");
