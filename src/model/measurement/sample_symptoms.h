@@ -74,7 +74,7 @@ struct LargestValueSymptom {
   double value = 0;
   int samples = 0, angles = 0;
   double over_next = 1;
-  bool is_nines = false;
+  bool is_nines = false, of_signal = false;
   bool IsMark(int valid) const {
     return samples >= 2 && samples <= valid / 2 && (over_next >= 20 || is_nines);
   }
