@@ -251,6 +251,7 @@ def read(
     dark_noise: bool = False,
     radiometry: str = "brdf",
     columns: str = "",
+    rows: str = "",
     theta_i: float = -1,
     theta_o: float = -1,
     bands: float | str | Sequence[float] = "",
@@ -278,6 +279,7 @@ def read(
         radiometry: quantity that a UTIA file stores: "brdf", "cosine", "srgb" or "dj_brdf".
         columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header, or
             "theta_i=Angle,f=Value" by the names there.
+        rows: the rows of a text table with these cells alone, "polarization=s,sample=2".
         theta_i: angle of incidence of a text table without a column of it [degrees]; -1 for none.
         theta_o: the same of the detector.
         bands: wavelengths of spectra to read [nm]: one for all channels, three as r, g and b, the longest as r, or
@@ -303,6 +305,7 @@ def read(
         dark_noise=dark_noise,
         radiometry=radiometry,
         columns=columns,
+        rows=rows,
         theta_i=theta_i,
         theta_o=theta_o,
         bands=_text_of_bands(bands),

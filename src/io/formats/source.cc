@@ -328,8 +328,8 @@ bool Source::synthetic() const { return IsSynthetic(name_); }
 std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHash(bytes_); }
 
 Measurement Source::Parsed(const SourceOptions& options) const {
-  const bool is_table =
-      !options.columns.empty() || options.theta_i_deg != -1 || options.theta_o_deg != -1;
+  const bool is_table = !options.columns.empty() || !options.rows.empty() ||
+                        options.theta_i_deg != -1 || options.theta_o_deg != -1;
   std::string utf8 = Utf8OfUtf16(bytes_);
   if (RecogniseContent(utf8).kind == Content::Kind::kJson) utf8.clear();  // must be UTF-8
   const std::string_view bytes = utf8.empty() ? std::string_view{bytes_} : utf8;

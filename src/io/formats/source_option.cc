@@ -213,6 +213,10 @@ std::vector<SourceOption> MakeOptions() {
                    "names of its header (docs/file-formats.md)",
            .of = "--columns is of text tables",
            .applies = IsTextTable}),
+      Option<"rows", &Options::rows>(
+          {.help = "the rows of a text table with these cells alone: polarization=s,sample=2",
+           .of = "--rows is of text tables",
+           .applies = IsTextTable}),
       Option<"theta_i", &Options::theta_i_deg>(
           {.help = "angle of incidence of all samples of a text table without a column theta_i",
            .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},

@@ -12,6 +12,8 @@
 #include "io/formats/column_advice.h"
 #include "io/formats/column_layout.h"
 #include "io/formats/matrix_table.h"
+#include "io/formats/repeated_rows.h"
+#include "io/formats/row_choice.h"
 #include "io/formats/spectra_of_rows.h"
 #include "io/formats/spectrum_bands.h"
 #include "io/formats/table_columns.h"
@@ -37,7 +39,9 @@ class TableReader {
         head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
         header_(head_.lines),
         layout_(Layout()),
-        row_(head_.separator, layout_) {
+        row_(head_.separator, layout_),
+        choice_(options.rows, head_.names, header_),
+        apart_(ColumnApart(layout_, choice_.columns())) {
     numbers_.resize(layout_.values.size());
   }
 
@@ -56,6 +60,7 @@ class TableReader {
     }
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
+    if (repeated_.IsRepeated()) measurement.notes.push_back(NoteOnRepeated());
     const auto note_unread = [&](double given, Angle angle, const std::string& name) {
       if (given == -1 || !layout_.angles[angle]) return;
       measurement.notes.push_back("--" + name + " is of tables without a column " + name +
@@ -92,7 +97,17 @@ class TableReader {
     block_theta_i_ = given_theta_i_.value_or(0);
     block_phi_i_ = 0;
     lines_after_ = 0;
+    repeated_ = {};
     std::optional<TextLines> first_after;
+    const auto add = [&](const TextLines& lines, const SphericalAngles& at, double wavelength) {
+      if (by_rows) {
+        AddToRows(lines, at, wavelength, &*by_rows);
+      } else if (bands_) {
+        bands_->Add(at, numbers_, &collector);
+      } else {
+        collector.Add(at, Channels());
+      }
+    };
     for (TextLines lines = head_.lines; lines.NextWithComment();) {
       if (!row_.Take(lines)) {
         if (IsBetween(lines)) continue;
@@ -101,22 +116,27 @@ class TableReader {
         continue;
       }
       if (first_after) row_.FailAsRow(*first_after);  // it stands between rows
+      if (!choice_.Takes(lines, &row_)) continue;
       const SphericalAngles angles = Angles(lines, turned);
       if (!Values(lines)) {
-        if (!by_rows) collector.LeaveOut(&BinCounts::missing);
+        if (!by_rows && !apart_) collector.LeaveOut(&BinCounts::missing);
         continue;
       }
-      const size_t n = numbers_.size();
-      const Rgb rho = {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
-      if (in_plane_) brighter_.Add(theta_i_, theta_o_, rho);
-      if (by_rows) {
-        AddToRows(lines, angles, &*by_rows);
-      } else if (bands_) {
-        bands_->Add(angles, numbers_, &collector);
+      if (in_plane_) brighter_.Add(theta_i_, theta_o_, Channels());
+      const double wavelength = CheckedWavelength(lines, by_rows.has_value());
+      if (apart_) {
+        repeated_.Add(row_.Cell(lines, *apart_), {angles, wavelength, numbers_});
       } else {
-        CheckWavelength(lines);
-        collector.Add(angles, rho);
+        add(lines, angles, wavelength);
       }
+    }
+    choice_.CheckTaken();
+    for (const RepeatedRows::Row& row : repeated_.Means()) {
+      numbers_ = row.values;
+      add(header_, row.at, row.wavelength);
+    }
+    for (int k = 0; repeated_.IsRepeated() && k < repeated_.incomplete(); ++k) {
+      collector.LeaveOut(&BinCounts::missing);
     }
     if (by_rows && !by_rows->wavelengths().empty()) {
       bands_.emplace(by_rows->wavelengths(), options_.bands, source_);
@@ -124,6 +144,12 @@ class TableReader {
     }
     // Light from both sides of one plane shows nothing of a grain.
     return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
+  }
+
+  // The values of a row, of which one counts for all.
+  Rgb Channels() const {
+    const size_t n = numbers_.size();
+    return {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
   }
 
   // Whether a line may stand between rows: a comment, the header once more, or one that gives
@@ -235,27 +261,28 @@ class TableReader {
     return micrometres ? 1000 * number : number;
   }
 
-  void AddToRows(const TextLines& lines, const SphericalAngles& angles, SpectraOfRows* by_rows) {
-    const double wavelength = WavelengthOf(lines);
+  // [nm], of a row; 0 without. A spectrum may be `by_rows`; else all have the same.
+  double CheckedWavelength(const TextLines& lines, bool by_rows) {
+    if (!layout_.wavelength) return 0;
     const size_t column = *layout_.wavelength;
-    if (!(wavelength > 0 && std::isfinite(wavelength))) {
-      lines.FailAt(column, layout_.columns[column].name, "expected a wavelength in nm");
-    }
-    if (!by_rows->Add(angles, wavelength, numbers_[0])) {
-      lines.Fail("this is one wavelength more than the " +
-                 std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum");
-    }
-  }
-
-  // Rows with several values must all have the same wavelength.
-  void CheckWavelength(const TextLines& lines) {
-    if (!layout_.wavelength) return;
+    const std::string& name = layout_.columns[column].name;
     const double wavelength = WavelengthOf(lines);
+    if (by_rows) {
+      if (wavelength > 0 && std::isfinite(wavelength)) return wavelength;
+      lines.FailAt(column, name, "expected a wavelength in nm");
+    }
     if (!wavelength_) wavelength_ = wavelength;
-    if (wavelength == *wavelength_) return;
-    lines.FailAt(*layout_.wavelength, layout_.columns[*layout_.wavelength].name,
+    if (bands_ || wavelength == *wavelength_) return wavelength;
+    lines.FailAt(column, name,
                  Text(wavelength) + " comes after " + Text(*wavelength_) +
                      "; make a column of each wavelength, as 550nm, or a file of each");
+  }
+
+  void AddToRows(const TextLines& lines, const SphericalAngles& angles, double wavelength,
+                 SpectraOfRows* by_rows) {
+    if (by_rows->Add(angles, wavelength, numbers_[0])) return;
+    lines.Fail("this is one wavelength more than the " +
+               std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum");
   }
 
   // Whether the table has the layout that this library writes, once the only one that it read.
@@ -268,6 +295,16 @@ class TableReader {
 
   std::string Note(bool turned) const;
 
+  std::string NoteOnRepeated() const {
+    const std::string& name = layout_.columns[*apart_].name;
+    const int lack = repeated_.incomplete();
+    return "column '" + name + "' (" + repeated_.Kinds() +
+           ") tells rows of the same directions apart: their mean is taken" +
+           (lack > 0 ? ", " + std::to_string(lack) + " directions that lack one are left out"
+                     : "") +
+           "; --rows=" + name + "=CELL reads one alone";
+  }
+
   const std::string& source_;
   const SourceOptions& options_;
   std::optional<double> given_theta_i_;  // [rad] by a flag, or above the rows
@@ -278,6 +315,9 @@ class TableReader {
   TextLines header_;  // at its line
   ColumnLayout layout_;
   TableRow row_;
+  RowChoice choice_;
+  std::optional<size_t> apart_;  // the column of the kinds of repeated rows
+  RepeatedRows repeated_;
   std::vector<double> numbers_;               // the values of a row
   double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
   std::optional<double> phi_i_, wavelength_;  // of the first row
@@ -330,6 +370,7 @@ std::string TableReader::Note(bool turned) const {
   say(scale == ValueScale::kLn, "logarithms as e^x");
   say(bands_.has_value() && layout_.wavelength, "a row a wavelength");
   if (bands_) say(true, bands_->Note());
+  say(!options_.rows.empty(), "rows of " + options_.rows);
   say(lines_after_ > 0, Lines(lines_after_) + " after the table");
   say(true, "f in 1/sr");
   if (!layout_.left_out.empty()) note += "; left out: " + LeftOutColumns(layout_);

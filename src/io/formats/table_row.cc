@@ -24,6 +24,11 @@ TableRow::TableRow(char separator, const ColumnLayout& layout)
 
 bool TableRow::IsGapAt(size_t column) const { return !is_numbers_ && IsGap(cells_[column]); }
 
+std::string_view TableRow::Cell(const TextLines& lines, size_t column) {
+  if (is_numbers_) SplitRow(WithoutComment(lines.line()), separator_, &cells_);
+  return cells_[column];
+}
+
 // Takes a row of numbers with a separator after each but the last, as nearly all rows are,
 // without looking for its cells.
 bool TableRow::TakeNumbers(std::string_view line) {

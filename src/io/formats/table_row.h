@@ -23,6 +23,7 @@ class TableRow {
   // Of the row taken. Throws Error for a cell without a number.
   double Number(const TextLines& lines, size_t column);
   bool IsGapAt(size_t column) const;
+  std::string_view Cell(const TextLines& lines, size_t column);
 
   bool decimal_commas() const { return decimal_commas_; }  // in a row so far
 

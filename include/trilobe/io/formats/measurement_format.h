@@ -12,9 +12,9 @@
 namespace trilobe {
 
 // How a source is read and which of its samples count as measured. `noise` is for `synth:` only,
-// `extrapolated` for RGL files, `radiometry` for UTIA files, `columns`, `theta_i_deg` and
-// `theta_o_deg` for text tables, `bands` for spectra, `azimuth_from_mirror` for scattered samples;
-// for other sources they only add a note to the measurement.
+// `extrapolated` for RGL files, `radiometry` for UTIA files, `columns`, `rows`, `theta_i_deg`
+// and `theta_o_deg` for text tables, `bands` for spectra, `azimuth_from_mirror` for scattered
+// samples; for other sources they only add a note to the measurement.
 struct SourceOptions {
   double noise = 0.0;        // relative standard deviation of multiplicative noise, 0 to 1
   double missing = 0.0;      // fraction of bins or samples removed at random, in [0, 1)
@@ -41,6 +41,8 @@ struct SourceOptions {
   // Names of the columns of a text table, "theta_i,theta_o,f", in the place of those of its header,
   // or some with these, "theta_i=Angle,f=Value".
   std::string columns = {};
+  // The rows of a text table with these cells, "polarization=s,sample=2"; "": all.
+  std::string rows = {};
   double theta_i_deg = -1;  // of a text table without a column theta_i, 0 to below 90; -1: none
   double theta_o_deg = -1;  // the same of theta_o
   // Wavelengths [nm] of spectra, "650,550,450": one for all channels, three as r, g and b, the
