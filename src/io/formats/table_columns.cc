@@ -7,8 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "core/files/text_lines.h"
 #include "io/formats/column_words.h"
-#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {
@@ -285,7 +286,8 @@ std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
   const auto has = [&](Role role) {
     return std::ranges::find(columns, role, &TableColumn::role) != columns.end();
   };
-  // The incidence, the emission and the phase of photometry.
+  // The incidence, the emission and the phase of photometry, and no index and error of others.
+  if (has(Role::kThetaI) || has(Role::kThetaO) || has(Role::kTheta)) return columns;
   const auto incidence = called("i"), emission = called("e"), phase = called("g");
   if (incidence == columns.end() || emission == columns.end()) return columns;
   incidence->role = Role::kThetaI;

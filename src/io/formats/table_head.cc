@@ -89,9 +89,10 @@ std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& heade
     const std::vector<size_t> at = PositionsOf(in_header, head.names);
     const std::string begin = "--columns names '" + in_header + "', ";
     if (at.empty()) header.Fail(begin + "and the header has " + Listed(head.names));
-    if (at.size() > 1)
+    if (at.size() > 1) {
       header.Fail(begin + "which the header has " + std::to_string(at.size()) +
                   " times; name all columns in their order, as " + kUsualColumns);
+    }
     if (whats[at[0]] != "-") header.Fail(begin + "twice");
     const std::string unit = ColumnNamed(head.names[at[0]]).unit;
     whats[at[0]] = what;

@@ -295,6 +295,7 @@ TEST(OddTable, AzimuthsByThePhase) {
   // Beside an azimuth it is left out, and g beside r and b is green.
   EXPECT_THAT(Read("i,e,phi,phase,BRDF\n20,10,90,25,1\n").notes,
               ElementsAre(HasSubstr("left out: 'phase'")));
+  EXPECT_EQ(Read("i,theta_i,theta_o,f,e\n1,20,10,5,0.1\n").samples.rho[0][0], 5);
   EXPECT_EQ(Read("i,e,phi,r,g,b\n20,10,90,1,2,3\n").samples.rho[0], (Rgb{1, 2, 3}));
 }
 

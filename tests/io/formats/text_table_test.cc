@@ -142,24 +142,6 @@ TEST(TextTable, NamesOfAngles) {
   }
 }
 
-TEST(TextTable, ASignIsNoPartOfAWavelength) {
-  for (const std::string name : {"-550nm", "\u2212550", "lambda=-550nm"}) {
-    EXPECT_EQ(ColumnNamed(name).role, ColumnRole::kOther) << name;
-  }
-  EXPECT_EQ(ColumnNamed("brdf-550nm").wavelength, 550);
-  EXPECT_THAT(ReadError("theta_i,theta_o,-550nm\n5,10,1\n"), HasSubstr("no column of values"));
-  const Measurement measured = Read("theta_i,theta_o,-450nm,550nm\n5,10,1,2\n");
-  EXPECT_THAT(measured.samples.rho, ElementsAre(Rgb{2, 2, 2}));
-  EXPECT_THAT(measured.notes.front(), HasSubstr("left out: '-450nm'"));
-}
-
-TEST(TextTable, AWavelengthMayNotStandTwice) {
-  const std::string text = "theta_i,theta_o,550nm,0.55um,650nm\n5,10,1,2,3\n";
-  for (const char* const bands : {"", "550"}) {
-    EXPECT_THAT(ReadError(text, {.bands = bands}), HasSubstr("'550nm' and '0.55um' say the same"));
-  }
-}
-
 // 10 MB of commas are refused before they are a gigabyte of cells.
 TEST(TextTable, ALineHasABoundedNumberOfCells) {
   const std::string commas(300000, ','), table = "theta_i,theta_o,f\n5,10,1\n";

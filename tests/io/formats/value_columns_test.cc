@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/formats/table_columns.h"
 #include "tests/test_directory.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"
@@ -12,6 +13,7 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 Measurement Read(const std::string& text, const SourceOptions& options = {}) {
@@ -67,6 +69,24 @@ TEST(ValueColumns, AColumnOfValuesMayHaveWordsBehindBrdf) {
   EXPECT_EQ(Read("theta_i,theta_o,brdf_data_1D\n20,10,0.5\n").samples.rho[0][0], 0.5);
   EXPECT_THAT(ReadError("theta_i,theta_o,brdf_mean,brdf_std\n20,10,0.5,1\n"),
               HasSubstr("no column of values"));
+}
+
+TEST(ValueColumns, ASignIsNoPartOfAWavelength) {
+  for (const std::string name : {"-550nm", "\u2212550", "lambda=-550nm"}) {
+    EXPECT_EQ(ColumnNamed(name).role, ColumnRole::kOther) << name;
+  }
+  EXPECT_EQ(ColumnNamed("brdf-550nm").wavelength, 550);
+  EXPECT_THAT(ReadError("theta_i,theta_o,-550nm\n5,10,1\n"), HasSubstr("no column of values"));
+  const Measurement measured = Read("theta_i,theta_o,-450nm,550nm\n5,10,1,2\n");
+  EXPECT_THAT(measured.samples.rho, ElementsAre(Rgb{2, 2, 2}));
+  EXPECT_THAT(measured.notes.front(), HasSubstr("left out: '-450nm'"));
+}
+
+TEST(ValueColumns, AWavelengthMayNotStandTwice) {
+  const std::string text = "theta_i,theta_o,550nm,0.55um,650nm\n5,10,1,2,3\n";
+  for (const char* const bands : {"", "550"}) {
+    EXPECT_THAT(ReadError(text, {.bands = bands}), HasSubstr("'550nm' and '0.55um' say the same"));
+  }
 }
 
 }  // namespace
