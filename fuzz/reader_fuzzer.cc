@@ -132,6 +132,8 @@ const std::vector<SourceOptions>& TableOptions() {
       {.columns = "theta_o,-,f", .theta_i_deg = 30},
       {.columns = "theta_o/phi_o", .theta_i_deg = 30},
       {.columns = "theta_o/theta_i"},
+      {.columns = "theta_i=i,f=g", .theta_o_deg = 45},
+      {.rows = "f=1"},
       {.cosine = 1, .scale = 0.01, .azimuth_from_mirror = true, .outliers = true}};
   return options;
 }

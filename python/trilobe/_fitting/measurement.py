@@ -240,7 +240,7 @@ def read(
     missing: float = 0,
     corrupt: str = "",
     cosine: float | str = 0,
-    scale: float = 1,
+    scale: float = 0,
     azimuth: str = "from_light",
     tilt: float | str = 0,
     seed: int = 1,
@@ -251,7 +251,9 @@ def read(
     dark_noise: bool = False,
     radiometry: str = "brdf",
     columns: str = "",
+    rows: str = "",
     theta_i: float = -1,
+    theta_o: float = -1,
     bands: float | str | Sequence[float] = "",
     threads: int = 0,
 ) -> Measurement:
@@ -263,7 +265,7 @@ def read(
         missing: the share of the samples that is left out at random.
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/your-data.md).
         cosine: takes cos theta_i to this power out of it; of cos theta_o as "o:1".
-        scale: a factor of all values, as 0.01 for percents.
+        scale: a factor of all values, as 0.01 for percents; 1 says that a reflectance is f in 1/sr. 0: none given.
         azimuth: "from_mirror" where phi_o of scattered samples is counted from the mirror direction.
         tilt: takes out by how much the sample leant towards azimuth 0 [degrees]; "auto" as the highlight of
             a table shows.
@@ -275,8 +277,11 @@ def read(
         outliers: takes samples that are far off those around them, too.
         dark_noise: takes readings that are lost in dark noise as they are, not medians around them.
         radiometry: quantity that a UTIA file stores: "brdf", "cosine", "srgb" or "dj_brdf".
-        columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header.
+        columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header, or
+            "theta_i=Angle,f=Value" by the names there.
+        rows: the rows of a text table with these cells alone, "polarization=s,sample=2".
         theta_i: angle of incidence of a text table without a column of it [degrees]; -1 for none.
+        theta_o: the same of the detector.
         bands: wavelengths of spectra to read [nm]: one for all channels, three as r, g and b, the longest as r, or
             more to make a colour of; by default all make a colour.
         threads: 0 for all cores.
@@ -300,7 +305,9 @@ def read(
         dark_noise=dark_noise,
         radiometry=radiometry,
         columns=columns,
+        rows=rows,
         theta_i=theta_i,
+        theta_o=theta_o,
         bands=_text_of_bands(bands),
         threads=threads,
     )

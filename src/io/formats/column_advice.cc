@@ -7,6 +7,9 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/text.h"
+#include "trilobe/core/base/angles.h"
+
 namespace trilobe {
 namespace {
 
@@ -18,6 +21,8 @@ struct Known {
 
 constexpr std::string_view kTimesCosine = "f times cos theta_o", kOverCosine = "--cosine=o:1";
 constexpr std::string_view kFactor = "pi f", kOverPi = "--scale=0.3183";
+constexpr std::string_view kRadianceFactor = "pi f times cos theta_i",
+                           kOverPiCosine = "--cosine=1 --scale=0.3183";
 constexpr std::string_view kReading =
     "what a detector reads; a BRDF is that over the irradiance of the sample";
 
@@ -38,6 +43,10 @@ constexpr Known kKnownValues[] = {
     {"reflfactor", kFactor, kOverPi},
     {"bidirectionalreflectancefactor", kFactor, kOverPi},
     {"brf", kFactor, kOverPi},
+    {"reff", kFactor, kOverPi},
+    {"radf", kRadianceFactor, kOverPiCosine},
+    {"if", kRadianceFactor, kOverPiCosine},
+    {"iof", kRadianceFactor, kOverPiCosine},
     {"counts", kReading, ""},
     {"intensity", kReading, ""},
     {"signal", kReading, ""},
@@ -280,19 +289,32 @@ std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,
             : role == ColumnRole::kPhiI                                 ? "phi_i"
             : role == ColumnRole::kThetaO || role == ColumnRole::kTheta ? "theta_o"
             : role == ColumnRole::kPhiO || role == ColumnRole::kPhi     ? "phi_o"
+            : role == ColumnRole::kPhase                                ? "phase"
                                                                         : "-";
   }
   return text;
 }
 
-std::string AdviceOn(const std::vector<TableColumn>& columns, bool theta_i_is_given) {
+std::string AdviceOnFactor(const std::string& name, double albedo) {
+  const auto reflects = [&](double times) {
+    if (!(albedo > 0)) return std::string();
+    return " (at least " + Text(times * albedo, 2) + " of the light comes back)";
+  };
+  return "column '" + name + "' may hold pi f, the reflectance factor, or f in 1/sr; type " +
+         std::string(kOverPi) + " if it is pi f" + reflects(1 / kPi) +
+         ", and --scale=1 if it is f" + reflects(1);
+}
+
+std::string AdviceOn(const std::vector<TableColumn>& columns, const GivenAngles& given) {
   const auto has = [&](auto is) {
     return std::ranges::any_of(columns, [&](const TableColumn& column) { return is(column.role); });
   };
   const bool has_theta_i =
-      theta_i_is_given || has([](ColumnRole role) { return role == ColumnRole::kThetaI; });
-  const bool has_theta_o = has(
-      [](ColumnRole role) { return role == ColumnRole::kThetaO || role == ColumnRole::kTheta; });
+      given.theta_i || has([](ColumnRole role) { return role == ColumnRole::kThetaI; }) ||
+      (given.theta_o && has([](ColumnRole role) { return role == ColumnRole::kTheta; }));
+  const bool has_theta_o = given.theta_o || has([](ColumnRole role) {
+                             return role == ColumnRole::kThetaO || role == ColumnRole::kTheta;
+                           });
   const bool from_mirror = has([](ColumnRole role) { return role == ColumnRole::kFromMirror; });
   if (has_theta_i && !has_theta_o && from_mirror &&
       has([](ColumnRole role) { return role == ColumnRole::kPhiO || role == ColumnRole::kPhi; })) {

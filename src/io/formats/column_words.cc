@@ -61,4 +61,8 @@ bool TakeSuffix(std::string_view suffix, std::string* key) {
   return true;
 }
 
+bool IsOneOf(std::string_view word, std::span<const std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
 }  // namespace trilobe

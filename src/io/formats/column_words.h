@@ -1,6 +1,7 @@
 #ifndef TRILOBE_IO_FORMATS_COLUMN_WORDS_H_
 #define TRILOBE_IO_FORMATS_COLUMN_WORDS_H_
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,8 @@ std::string LettersAndDigits(std::string_view plain);
 
 // Takes the suffix off a key that is longer than it.
 bool TakeSuffix(std::string_view suffix, std::string* key);
+
+bool IsOneOf(std::string_view word, std::span<const std::string_view> words);
 
 }  // namespace trilobe
 

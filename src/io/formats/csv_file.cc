@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/files/file.h"
+#include "io/formats/column_layout.h"
 #include "io/formats/matrix_table.h"
-#include "io/formats/table_columns.h"
 #include "io/formats/table_reader.h"
 #include "io/formats/text_table.h"
 #include "trilobe/io/formats/measurement_format.h"
@@ -82,7 +82,7 @@ std::string WriteCsv(const Measurement& measurement, const std::string& path, in
 bool LooksLikeCsv(std::string_view text) {
   constexpr size_t kLongest = 1 << 16;
   text = text.substr(0, kLongest);
-  return FindTableHead(text, "", /*theta_i_is_given=*/false).has_value() || HasAxes(text);
+  return FindTableHead(text, "", /*theta_is_given=*/false).has_value() || HasAxes(text);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ std::string WhatMeasurementsAre() {
 bool IsTable(std::string_view text) {
   constexpr size_t kLookedAt = 1 << 16;
   if (IsTableOfNumbers(text)) return true;
-  const auto head = FindTableHead(text.substr(0, kLookedAt), "", /*theta_i_is_given=*/true);
+  const auto head = FindTableHead(text.substr(0, kLookedAt), "", /*theta_is_given=*/true);
   if (!head) return LooksLikeTwoColumns(text.substr(0, kLookedAt));
   return std::ranges::any_of(head->names, [](const std::string& name) {
     const ColumnRole role = ColumnNamed(name).role;
@@ -221,7 +221,7 @@ void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   apply("tilt", -(options.tilt_deg ? *options.tilt_deg : ShownTilt(measurement)));
   apply("cosine", -options.cosine);
   apply("cosine_o", -options.cosine_o);
-  apply("scale", options.scale);
+  apply("scale", options.scale == 0 ? 1 : options.scale);
   Corrupt(corruptions, options.seed, options.num_threads, measurement);
   if (options.azimuth_from_mirror && !measurement->table) TurnAzimuths(measurement);
 }
@@ -328,7 +328,8 @@ bool Source::synthetic() const { return IsSynthetic(name_); }
 std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHash(bytes_); }
 
 Measurement Source::Parsed(const SourceOptions& options) const {
-  const bool is_table = !options.columns.empty() || options.theta_i_deg != -1;
+  const bool is_table = !options.columns.empty() || !options.rows.empty() ||
+                        options.theta_i_deg != -1 || options.theta_o_deg != -1;
   std::string utf8 = Utf8OfUtf16(bytes_);
   if (RecogniseContent(utf8).kind == Content::Kind::kJson) utf8.clear();  // must be UTF-8
   const std::string_view bytes = utf8.empty() ? std::string_view{bytes_} : utf8;

@@ -152,8 +152,10 @@ std::vector<SourceOption> MakeOptions() {
        .set = SetCosine,
        .get = [](const Options& of) { return TextOf(of.cosine) + ",o:" + TextOf(of.cosine_o); }},
       Option<"scale", &Options::scale>(
-          {.help = "multiply all values by this: 0.01 for percents, 0.3183 for pi f",
-           .range = {"from 1e-6 to 1e6", [](double x) { return x >= 1e-6 && x <= 1e6; }},
+          {.help = "multiply all values by this: 0.01 for percents, 0.3183 for pi f, 1 for a "
+                   "reflectance that is f in 1/sr; 0: not given",
+           .range = {"from 1e-6 to 1e6, or 0 for none",
+                     [](double x) { return x == 0 || (x >= 1e-6 && x <= 1e6); }},
            .changes_values = true}),
       {.name = "azimuth",
        .help = "from_mirror: azimuths phi_o of scattered samples are counted from the mirror "
@@ -207,13 +209,24 @@ std::vector<SourceOption> MakeOptions() {
       Option<"columns", &Options::columns>(
           {.help = "names of the columns of a text table, in the place of a header: "
                    "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
-                   "wavelength, and - for a column to leave out (docs/file-formats.md)",
+                   "wavelength, and - for a column to leave out; or theta_i=NAME,f=NAME by the "
+                   "names of its header (docs/file-formats.md)",
            .of = "--columns is of text tables",
+           .applies = IsTextTable}),
+      Option<"rows", &Options::rows>(
+          {.help = "the rows of a text table with these cells alone: polarization=s,sample=2",
+           .of = "--rows is of text tables",
            .applies = IsTextTable}),
       Option<"theta_i", &Options::theta_i_deg>(
           {.help = "angle of incidence of all samples of a text table without a column theta_i",
            .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},
            .of = "--theta_i is of text tables",
+           .applies = IsTextTable}),
+      Option<"theta_o", &Options::theta_o_deg>(
+          {.help = "the same of a table without a column theta_o, as of a detector that stands "
+                   "still",
+           .range = {"in degrees from 0 to below 90, or -1 for none", IsAngleOrNone},
+           .of = "--theta_o is of text tables",
            .applies = IsTextTable}),
       Option<"bands", &Options::bands>(
           {.help = "wavelengths of spectra to read, in nm: one, as 550, for all channels; three, "

@@ -7,8 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "core/files/text_lines.h"
 #include "io/formats/column_words.h"
-#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {
@@ -16,30 +17,19 @@ namespace {
 
 using Role = ColumnRole;
 
-constexpr const char* kUsualNames[] = {"theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b"};
-
 // --- Units ---------------------------------------------------------------------------------------
-
-bool IsOneOf(std::string_view word, std::span<const std::string_view> words) {
-  return std::ranges::find(words, word) != words.end();
-}
 
 constexpr std::string_view kAngleUnits[] = {"degrees", "degree", "degs", "deg",  "radians",
                                             "radian",  "rad",    "gon",  "grad", "gradians"};
 constexpr std::string_view kOtherUnits[] = {
     "1/sr", "sr^-1", "sr-1", "/sr",  "sr^{-1}", "%",      "percent", "db", "nm",
     "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
-constexpr std::string_view kNoBrdf[] = {"%", "percent"};
-
-// A name in quotes for a note, in UTF-8.
-std::string Quoted(std::string_view name) {
-  constexpr size_t kLongest = 40;
-  return std::string("'").append(Printable(name.substr(0, kLongest))).append("'");
-}
+constexpr std::string_view kPerSteradianKeys[] = {"persr", "1sr", "sr1"};
+constexpr std::string_view kPerSteradian[] = {"1/sr", "sr^-1", "sr-1", "/sr", "sr^{-1}"};
 
 // --- Angles --------------------------------------------------------------------------------------
 
-constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar"};
+constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar", "zen", "zn"};
 constexpr std::string_view kPhiWords[] = {"phi",    "azimuthal", "azimuth", "azimut",
                                           "acimut", "azim",      "az"};
 constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
@@ -63,6 +53,8 @@ constexpr std::string_view kOutgoingAlone[] = {"outgoing",
                                                "view",
                                                "viewing",
                                                "exit",
+                                               "emission",
+                                               "emergence",
                                                "emission",
                                                "detector",
                                                "receiver",
@@ -120,6 +112,7 @@ std::optional<Role> AngleRole(std::string key) {
   }
   if (IsOneOf(key, kIncidentAlone)) return Role::kThetaI;
   if (IsOneOf(key, kOutgoingAlone)) return Role::kThetaO;
+  if (key == "phase" || key == "pha") return Role::kPhase;
   if (key == "pi" || key == "saa") return Role::kPhiI;
   if (key == "po" || key == "pr" || key == "vaa") return Role::kPhiO;
   if (key == "dphi" || key == "deltaphi" || key == "relativeazimuth" || key == "raa") {
@@ -133,8 +126,16 @@ std::optional<Role> AngleRole(std::string key) {
 
 // --- Values --------------------------------------------------------------------------------------
 
-constexpr std::string_view kValues[] = {"brdf", "bsdf",  "bdrf", "frdb", "reflectance",
-                                        "rho",  "value", "val",  "fr",   "f"};
+constexpr std::string_view kValues[] = {"brdf",        "bsdf",         "bdrf", "frdb",
+                                        "reflectance", "reflectivity", "refl", "rho",
+                                        "value",       "val",          "fr",   "f"};
+constexpr std::string_view kReflectances[] = {"reflectance", "reflectivity", "refl", "rho"};
+constexpr std::string_view kSaysBrdf[] = {"brdf", "bsdf", "bdrf", "frdb"};
+
+bool SaysReflectance(std::string_view key) {
+  return std::ranges::any_of(kReflectances, [&](auto word) { return key.starts_with(word); }) &&
+         std::ranges::none_of(kSaysBrdf, [&](auto word) { return key.ends_with(word); });
+}
 
 std::optional<Role> ColorRole(std::string_view word) {
   if (word == "r" || word == "red") return Role::kRed;
@@ -144,7 +145,7 @@ std::optional<Role> ColorRole(std::string_view word) {
 }
 
 std::optional<Role> ValueRole(std::string text) {
-  for (const std::string_view suffix : {"persr", "1sr", "sr1"}) TakeSuffix(suffix, &text);
+  for (const std::string_view suffix : kPerSteradianKeys) TakeSuffix(suffix, &text);
   const std::string_view key = text;
   if (IsOneOf(key, kValues)) return Role::kValue;
   for (const std::string_view word : kValues) {
@@ -196,17 +197,24 @@ bool IsSigned(std::string_view before) {
   return false;
 }
 
+constexpr std::string_view kWavelength[] = {"lambda", "wl", "wavelength"};
+// Names of reflectance before a wavelength alone.
+constexpr std::string_view kReflectanceAt[] = {"r", "band"};
+
+std::string_view BeforeNumber(std::string_view plain) {
+  return plain.substr(0, std::min(plain.find_first_of("0123456789"), plain.size()));
+}
+
 // [nm] "550", "550nm", "0.55 um", "brdf_550", "lambda=550nm"; none for what is no wavelength.
 std::optional<double> WavelengthIn(std::string_view plain, std::string_view unit) {
-  const size_t first = std::min(plain.find_first_of("0123456789"), plain.size());
-  const std::string_view before = plain.substr(0, first);
+  const std::string_view before = BeforeNumber(plain);
   const std::string word = LettersAndDigits(before);
   if (IsSigned(before)) return std::nullopt;
-  if (!word.empty() && word != "lambda" && word != "wl" && word != "wavelength" && word != "r" &&
+  if (!word.empty() && !IsOneOf(word, kWavelength) && !IsOneOf(word, kReflectanceAt) &&
       !IsOneOf(word, kValues)) {
     return std::nullopt;
   }
-  const std::string_view rest = plain.substr(first);
+  const std::string_view rest = plain.substr(before.size());
   double number = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
   if (error != std::errc()) return std::nullopt;
@@ -225,14 +233,20 @@ void SetRole(const std::string& plain, TableColumn* column) {
   if (const auto wavelength = WavelengthIn(Trimmed(plain), column->unit)) {
     column->role = Role::kBand;
     column->wavelength = *wavelength;
+    const std::string word = LettersAndDigits(BeforeNumber(plain));
+    column->is_reflectance = IsOneOf(word, kReflectanceAt) || SaysReflectance(word);
     return;
   }
   std::string key = LettersAndDigits(plain);
   column->scale = TakeScale(&key);
-  if (key == "wavelength" || key == "lambda" || key == "wl") {
+  if (IsOneOf(key, kWavelength)) {
     column->role = Role::kWavelength;
   } else if (const auto value = ValueRole(key)) {
     column->role = *value;
+    for (const std::string_view suffix : kPerSteradianKeys) {
+      column->per_steradian |= key.ends_with(suffix);
+    }
+    column->is_reflectance = !column->per_steradian && SaysReflectance(key);
   } else {
     for (const std::string_view unit : kAngleUnits) {
       if (!TakeSuffix(unit, &key)) continue;
@@ -243,133 +257,6 @@ void SetRole(const std::string& plain, TableColumn* column) {
   }
 }
 
-// --- Layout --------------------------------------------------------------------------------------
-
-class ColumnLayouter {
- public:
-  ColumnLayouter(const TextLines& lines, const std::vector<TableColumn>& columns)
-      : lines_(lines), layout_{.columns = columns}, is_read_(columns.size()) {}
-
-  ColumnLayout Lay(bool theta_i_is_given, bool prefers_bands) {
-    LayAngles(theta_i_is_given);
-    LayValues(prefers_bands);
-    for (size_t k = 0; k < is_read_.size(); ++k) {
-      if (!is_read_[k]) layout_.left_out.push_back(k);
-    }
-    return std::move(layout_);
-  }
-
- private:
-  std::vector<size_t> All(Role role) const {
-    std::vector<size_t> found;
-    for (size_t k = 0; k < layout_.columns.size(); ++k) {
-      if (layout_.columns[k].role == role) found.push_back(k);
-    }
-    return found;
-  }
-
-  std::optional<size_t> One(Role role) {
-    const std::vector<size_t> found = All(role);
-    if (found.empty()) return std::nullopt;
-    if (found.size() > 1) FailAsTheSame(found[0], found[1]);
-    is_read_[found[0]] = true;
-    return found[0];
-  }
-
-  [[noreturn]] void FailAsTheSame(size_t one, size_t other) const {
-    lines_.Fail("the header has " + std::to_string(layout_.columns.size()) + " columns, and '" +
-                layout_.columns[one].name + "' and '" + layout_.columns[other].name +
-                "' say the same; --columns=" + kUsualColumns +
-                " names those to read, - the others");
-  }
-
-  [[noreturn]] void FailWithout(const std::string& column, const std::string& advice) const {
-    lines_.Fail("the header has no column " + column + advice);
-  }
-
-  void LayAngles(bool theta_i_is_given) {
-    constexpr Role kRoles[kAngles] = {Role::kThetaI, Role::kPhiI, Role::kThetaO, Role::kPhiO};
-    for (int k = 0; k < kAngles; ++k) layout_.angles[k] = One(kRoles[k]);
-    auto& [theta_i, phi_i, theta_o, phi_o] = layout_.angles;
-    if (!theta_i && !theta_i_is_given) {
-      FailWithout("theta_i", std::string("; --theta_i=DEGREES gives it, and --columns=") +
-                                 kUsualColumns + " names columns");
-    }
-    if (!theta_o) theta_o = One(Role::kTheta);
-    if (!theta_o && !phi_i && !phi_o && All(Role::kPhi).empty()) {
-      theta_o = One(Role::kFromMirror);
-      layout_.from_mirror = theta_o.has_value();
-    }
-    if (!theta_o) {
-      FailWithout("theta_o", std::string("; --columns=") + kUsualColumns + " names columns");
-    }
-    if (!phi_o && !phi_i) phi_o = One(Role::kPhi);
-    if (!phi_o && phi_i) {
-      FailWithout("phi_o", std::string("; it must be ") + kUsualColumns + ", in any order");
-    }
-    for (int k = 0; k < kAngles; ++k) {
-      if (layout_.angles[k]) layout_.units[k] = UnitOf(layout_.columns[*layout_.angles[k]]);
-    }
-  }
-
-  // [rad]
-  double UnitOf(const TableColumn& column) const {
-    if (const auto radians = RadiansIn(column.unit)) return *radians;
-    lines_.Fail("column '" + column.name +
-                "' is neither in degrees nor in radians or gon; convert it");
-  }
-
-  void LayValues(bool prefers_bands) {
-    const auto red = All(Role::kRed), green = All(Role::kGreen), blue = All(Role::kBlue);
-    const auto values = All(Role::kValue), bands = All(Role::kBand);
-    layout_.wavelength = One(Role::kWavelength);
-    const bool takes_bands = prefers_bands && !bands.empty();
-    if (!takes_bands && !green.empty() && !blue.empty()) {
-      const Role first = red.empty() ? Role::kValue : Role::kRed;  // "fr" beside "fg" and "fb"
-      for (const Role role : {first, Role::kGreen, Role::kBlue}) {
-        if (const auto column = One(role)) layout_.values.push_back(*column);
-      }
-      if (layout_.values.size() < kChannels) FailWithout("r", " beside those of g and b");
-    } else if (takes_bands || bands.size() > 1) {
-      LayBands(bands);
-    } else if (!values.empty()) {
-      layout_.values = {*One(Role::kValue)};
-    } else if (red.size() + green.size() + blue.size() == 1) {
-      layout_.values = {
-          *One(red.empty() ? green.empty() ? Role::kBlue : Role::kGreen : Role::kRed)};
-    } else if (!bands.empty()) {
-      layout_.values = {*One(Role::kBand)};
-      layout_.wavelengths = {layout_.columns[layout_.values[0]].wavelength};
-    } else {
-      FailWithout("of values",
-                  std::string(", as r, g, b, or brdf, or wavelengths as 550nm; --columns=") +
-                      kUsualColumns + " names columns, - those to leave out");
-    }
-    for (const size_t k : layout_.values) {
-      const TableColumn& column = layout_.columns[k];
-      if (!IsOneOf(column.unit, kNoBrdf)) continue;
-      lines_.Fail("column '" + column.name + "' is in " + column.unit +
-                  ", and a BRDF is in 1/sr; convert it");
-    }
-  }
-
-  void LayBands(std::vector<size_t> bands) {
-    const auto wavelength = [&](size_t k) { return layout_.columns[k].wavelength; };
-    std::ranges::sort(bands, {}, wavelength);
-    const auto twice = std::ranges::adjacent_find(bands, {}, wavelength);
-    if (twice != bands.end()) FailAsTheSame(*twice, *std::next(twice));
-    for (const size_t k : bands) {
-      is_read_[k] = true;
-      layout_.wavelengths.push_back(wavelength(k));
-    }
-    layout_.values = std::move(bands);
-  }
-
-  const TextLines& lines_;
-  ColumnLayout layout_;
-  std::vector<bool> is_read_;
-};
-
 }  // namespace
 
 TableColumn ColumnNamed(std::string_view name) {
@@ -379,6 +266,7 @@ TableColumn ColumnNamed(std::string_view name) {
   const std::string whole = plain, bracket = TakeBracket(&plain);
   if (const auto unit = UnitIn(bracket)) {
     column.unit = *unit;
+    column.per_steradian = IsOneOf(*unit, kPerSteradian);
   } else if (!bracket.empty()) {  // "theta (incident)" and "r (red)"
     SetRole(whole, &column);
     if (column.role != Role::kOther) return column;
@@ -386,6 +274,34 @@ TableColumn ColumnNamed(std::string_view name) {
   SetRole(plain, &column);
   if (column.unit == "db") column.scale = ValueScale::kDecibels;
   return column;
+}
+
+std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
+  std::vector<TableColumn> columns;
+  for (const std::string& name : names) columns.push_back(ColumnNamed(name));
+  const auto called = [&](std::string_view name) {
+    return std::ranges::find_if(
+        columns, [&](const TableColumn& column) { return IsCalled(column.name, name); });
+  };
+  const auto has = [&](Role role) {
+    return std::ranges::find(columns, role, &TableColumn::role) != columns.end();
+  };
+  // The incidence, the emission and the phase of photometry, and no index and error of others.
+  if (has(Role::kThetaI) || has(Role::kThetaO) || has(Role::kTheta)) return columns;
+  const auto incidence = called("i"), emission = called("e"), phase = called("g");
+  if (incidence == columns.end() || emission == columns.end()) return columns;
+  incidence->role = Role::kThetaI;
+  emission->role = Role::kThetaO;
+  if (phase != columns.end() && !has(Role::kRed) && !has(Role::kBlue)) phase->role = Role::kPhase;
+  return columns;
+}
+
+bool IsCalled(std::string_view name, std::string_view usual) {
+  std::string plain = Plain(name);
+  TakeBracket(&plain);
+  std::string key = LettersAndDigits(plain);
+  for (const std::string_view unit : kAngleUnits) TakeSuffix(unit, &key);
+  return key == LettersAndDigits(usual);
 }
 
 std::optional<double> RadiansIn(std::string_view unit) {
@@ -402,42 +318,6 @@ std::optional<std::string> UnitIn(std::string_view cell) {
   }
   if (IsOneOf(plain, kAngleUnits) || IsOneOf(plain, kOtherUnits)) return plain;
   return std::nullopt;
-}
-
-std::vector<std::string> RenamedColumns(const ColumnLayout& layout) {
-  std::vector<std::string> renamed;
-  const auto add = [&](size_t column, const char* usual) {
-    const std::string& name = layout.columns[column].name;
-    std::string plain = Plain(name);
-    TakeBracket(&plain);
-    std::string key = LettersAndDigits(plain);
-    for (const std::string_view unit : kAngleUnits) TakeSuffix(unit, &key);
-    if (key != LettersAndDigits(usual)) renamed.push_back(Quoted(name) + " as " + usual);
-  };
-  for (int k = 0; k < kAngles; ++k) {
-    if (layout.angles[k]) add(*layout.angles[k], kUsualNames[k]);
-  }
-  if (!layout.wavelengths.empty()) return renamed;
-  for (size_t k = 0; k < layout.values.size(); ++k) {
-    if (layout.columns[layout.values[k]].role == Role::kValue) continue;
-    add(layout.values[k], layout.values.size() == 1 ? "f" : kUsualNames[kAngles + k]);
-  }
-  return renamed;
-}
-
-std::string LeftOutColumns(const ColumnLayout& layout) {
-  constexpr size_t kMost = 5;
-  std::string text;
-  for (size_t k = 0; k < std::min(layout.left_out.size(), kMost); ++k) {
-    text += (k > 0 ? ", " : "") + Quoted(layout.columns[layout.left_out[k]].name);
-  }
-  if (layout.left_out.size() <= kMost) return text;
-  return text + " and " + std::to_string(layout.left_out.size() - kMost) + " more";
-}
-
-ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
-                      bool theta_i_is_given, bool prefers_bands) {
-  return ColumnLayouter(lines, columns).Lay(theta_i_is_given, prefers_bands);
 }
 
 }  // namespace trilobe

@@ -1,82 +1,31 @@
 #include "io/formats/table_reader.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <system_error>
 #include <vector>
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
+#include "io/formats/brighter_side.h"
 #include "io/formats/column_advice.h"
+#include "io/formats/column_layout.h"
 #include "io/formats/matrix_table.h"
+#include "io/formats/repeated_rows.h"
+#include "io/formats/row_choice.h"
 #include "io/formats/spectra_of_rows.h"
 #include "io/formats/spectrum_bands.h"
 #include "io/formats/table_columns.h"
+#include "io/formats/table_head.h"
 #include "io/formats/table_lines.h"
+#include "io/formats/table_row.h"
 #include "io/formats/text_table.h"
+#include "model/measurement/sample_symptoms.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
-
-TableHead HeadOf(std::string_view text, const std::string& source, const SourceOptions& options,
-                 bool theta_i_is_given) {
-  TableHead head{.lines = TextLines(text, source)};
-  if (!options.columns.empty()) {
-    std::vector<std::string> names;
-    for (const std::string_view name : SplitCells(options.columns)) names.emplace_back(name);
-    head = TableHeadBy(names, text, source);
-  } else if (auto found = FindTableHead(text, source, theta_i_is_given)) {
-    head = *std::move(found);
-  } else if (auto other = FindTableHead(text, source, /*theta_i_is_given=*/true)) {
-    head = *std::move(other);  // the layout says what is missing
-  } else {
-    if (!head.lines.Next()) {
-      throw Error(source + ": the file is empty; a table begins with a header row, as " +
-                  kUsualColumns);
-    }
-    while (head.lines.line().starts_with('%') && head.lines.Next()) {
-    }
-    if (LooksLikeRow(head.lines.line(), 2)) {
-      head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
-                      " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
-                      "columns of a matrix");
-    }
-    head.names = NamesOfFirstLine(head.lines.line());
-  }
-  return head;
-}
-
-// Samples of a plane, with signs: whether the samples near the mirror direction are brighter where
-// theta_i and theta_o have the same sign, or different ones.
-class BrighterSide {
- public:
-  void Add(double theta_i, double theta_o, const Rgb& rho) {
-    const double mean = Mean(rho);
-    if (!(std::abs(theta_i) < kPi / 2 && std::abs(theta_o) < kPi / 2) || !(mean >= 0)) return;
-    if (!std::isfinite(mean) || theta_o == 0) return;
-    const bool same = std::signbit(theta_i) == std::signbit(theta_o);
-    const bool near = std::abs(std::abs(theta_i) - std::abs(theta_o)) < DegreesToRadians(15);
-    for (const bool nearby : {false, near}) {
-      sum_[nearby][same] += mean;
-      ++count_[nearby][same];
-    }
-    seen_[same] = true;
-  }
-  bool both() const { return seen_[0] && seen_[1]; }
-  bool same() const {
-    const bool near = count_[1][0] > 0 && count_[1][1] > 0;
-    return sum_[near][1] * count_[near][0] >= sum_[near][0] * count_[near][1];
-  }
-
- private:
-  std::array<std::array<double, 2>, 2> sum_{}, count_{};  // [near the mirror direction][same sign]
-  std::array<bool, 2> seen_{};
-};
 
 class TableReader {
  public:
@@ -85,31 +34,40 @@ class TableReader {
         options_(options),
         given_theta_i_(options.theta_i_deg != -1 ? DegreesToRadians(options.theta_i_deg)
                                                  : ThetaIBeforeRows(text)),
-        head_(HeadOf(text, source, options, given_theta_i_.has_value())),
-        layout_(Layout()) {
+        given_theta_o_(DegreesToRadians(std::max(options.theta_o_deg, 0.0))),
+        given_{.theta_i = given_theta_i_.has_value(), .theta_o = options.theta_o_deg != -1},
+        head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
+        header_(head_.lines),
+        layout_(Layout()),
+        row_(head_.separator, layout_),
+        choice_(options.rows, head_.names, header_),
+        apart_(ColumnApart(layout_, choice_.columns())) {
     numbers_.resize(layout_.values.size());
-    for (const std::optional<size_t>& angle : layout_.angles) {
-      if (angle) num_read_ = std::max(num_read_, *angle + 1);
-    }
-    for (const size_t column : layout_.values) num_read_ = std::max(num_read_, column + 1);
-    if (layout_.wavelength) num_read_ = std::max(num_read_, *layout_.wavelength + 1);
   }
 
   Measurement Read() {
     // Whether phi_o is that of the signs, turned by 180 degrees.
-    bool turned = !layout_.angles[kPhiO];
+    bool turned = !HasAzimuths();
     Measurement measurement = ReadRows(turned);
     by_brightness_ = in_plane_ && signed_ && brighter_.both() && !layout_.from_mirror;
     if (by_brightness_ && brighter_.same() != turned) {
       turned = brighter_.same();
       measurement = ReadRows(turned);
     }
+    if (options_.scale == 0 && MayBeFactor(layout_, !options_.columns.empty())) {
+      header_.Fail(AdviceOnFactor(layout_.columns[layout_.values[0]].name,
+                                  MedianReflected(measurement.samples)));
+    }
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
-    if (options_.theta_i_deg != -1 && layout_.angles[kThetaI]) {
-      measurement.notes.emplace_back(
-          "--theta_i is of tables without a column theta_i, and changes nothing here");
-    }
+    if (repeated_.IsRepeated()) measurement.notes.push_back(NoteOnRepeated());
+    const auto note_unread = [&](double given, Angle angle, const std::string& name) {
+      if (given == -1 || !layout_.angles[angle]) return;
+      measurement.notes.push_back("--" + name + " is of tables without a column " + name +
+                                  ", and changes nothing here");
+    };
+    note_unread(options_.theta_i_deg, kThetaI, "theta_i");
+    note_unread(options_.theta_o_deg, kThetaO, "theta_o");
     return measurement;
   }
 
@@ -117,17 +75,17 @@ class TableReader {
   enum Angle { kThetaI, kPhiI, kThetaO, kPhiO };
 
   ColumnLayout Layout() {
-    const TextLines header = head_.lines;
     first_names_ = head_.names;
     GoToRows(&head_);
-    std::vector<TableColumn> columns;
-    for (const std::string& name : head_.names) columns.push_back(ColumnNamed(name));
-    if (const std::string advice = AdviceOn(columns, given_theta_i_.has_value()); !advice.empty()) {
-      header.Fail(advice);
-    }
-    return LayoutOf(header, columns, given_theta_i_.has_value(),
+    const std::vector<TableColumn> columns = ColumnsOf(head_, header_, options_.columns);
+    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) header_.Fail(advice);
+    CheckNames(options_.columns);
+    return LayoutOf(header_, columns, given_,
                     /*prefers_bands=*/!options_.bands.empty());
   }
+
+  // Whether the phase gives one, too.
+  bool HasAzimuths() const { return layout_.angles[kPhiO] || layout_.phase; }
 
   Measurement ReadRows(bool turned) {
     SampleCollector collector(source_, "CSV file of scattered samples");
@@ -139,31 +97,46 @@ class TableReader {
     block_theta_i_ = given_theta_i_.value_or(0);
     block_phi_i_ = 0;
     lines_after_ = 0;
+    repeated_ = {};
     std::optional<TextLines> first_after;
+    const auto add = [&](const TextLines& lines, const SphericalAngles& at, double wavelength) {
+      if (by_rows) {
+        AddToRows(lines, at, wavelength, &*by_rows);
+      } else if (bands_) {
+        bands_->Add(at, numbers_, &collector);
+      } else {
+        collector.Add(at, Channels());
+      }
+    };
     for (TextLines lines = head_.lines; lines.NextWithComment();) {
-      if (!TakeNumbers(lines.line()) && !TakeCells(lines)) {
+      if (!row_.Take(lines)) {
         if (IsBetween(lines)) continue;
         if (!first_after) first_after = lines;
         ++lines_after_;
         continue;
       }
-      if (first_after) FailAsRow(*first_after);  // it stands between rows
+      if (first_after) row_.FailAsRow(*first_after);  // it stands between rows
+      if (!choice_.Takes(lines, &row_)) continue;
       const SphericalAngles angles = Angles(lines, turned);
       if (!Values(lines)) {
-        if (!by_rows) collector.LeaveOut(&BinCounts::missing);
+        if (!by_rows && !apart_) collector.LeaveOut(&BinCounts::missing);
         continue;
       }
-      const size_t n = numbers_.size();
-      const Rgb rho = {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
-      if (in_plane_) brighter_.Add(theta_i_, theta_o_, rho);
-      if (by_rows) {
-        AddToRows(lines, angles, &*by_rows);
-      } else if (bands_) {
-        bands_->Add(angles, numbers_, &collector);
+      if (in_plane_) brighter_.Add(theta_i_, theta_o_, Channels());
+      const double wavelength = CheckedWavelength(lines, by_rows.has_value());
+      if (apart_) {
+        repeated_.Add(row_.Cell(lines, *apart_), {angles, wavelength, numbers_});
       } else {
-        CheckWavelength(lines);
-        collector.Add(angles, rho);
+        add(lines, angles, wavelength);
       }
+    }
+    choice_.CheckTaken();
+    for (const RepeatedRows::Row& row : repeated_.Means()) {
+      numbers_ = row.values;
+      add(header_, row.at, row.wavelength);
+    }
+    for (int k = 0; repeated_.IsRepeated() && k < repeated_.incomplete(); ++k) {
+      collector.LeaveOut(&BinCounts::missing);
     }
     if (by_rows && !by_rows->wavelengths().empty()) {
       bands_.emplace(by_rows->wavelengths(), options_.bands, source_);
@@ -173,54 +146,10 @@ class TableReader {
     return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
   }
 
-  // Takes a row of numbers with a separator after each but the last, as nearly all rows are,
-  // without looking for its cells.
-  bool TakeNumbers(std::string_view line) {
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    is_numbers_ = false;
-    row_.resize(layout_.columns.size());
-    for (size_t k = 0; k < row_.size(); ++k) {
-      if (k > 0 && (at == end || *at++ != head_.separator)) return false;
-      const auto [after, error] = std::from_chars(at, end, row_[k]);
-      if (error != std::errc()) return false;
-      at = after;
-    }
-    is_numbers_ = at == end;
-    return is_numbers_;
-  }
-
-  // The same of any row; false for a line of text.
-  bool TakeCells(const TextLines& lines) {
-    const std::string_view line = WithoutComment(lines.line());
-    if (line.empty() || IsRule(line)) return false;
-    if (TakeNumbers(line)) return true;
-    SplitRow(line, head_.separator, &cells_);
-    const std::vector<TableColumn>& columns = layout_.columns;
-    if (cells_.size() == columns.size() + 1 && cells_.back().empty()) cells_.pop_back();
-    const bool has_all_read = cells_.size() <= columns.size() && cells_.size() >= num_read_;
-    const std::optional<size_t> theta_o = layout_.angles[kThetaO];
-    const auto is_number = [&](size_t column) {
-      return ToNumber(cells_[column]) || DecimalCommaNumber(cells_[column]) ||
-             OddNumber(cells_[column]);
-    };
-    if (IsText(line) && !(has_all_read && is_number(*theta_o))) return false;
-    if (!has_all_read) FailAsRow(lines);
-    cells_.resize(columns.size());
-    return true;
-  }
-
-  [[noreturn]] void FailAsRow(const TextLines& lines) const {
-    std::vector<std::string_view> cells;
-    SplitRow(WithoutComment(lines.line()), head_.separator, &cells);
-    const std::vector<TableColumn>& columns = layout_.columns;
-    if (cells.size() == columns.size()) {
-      const size_t theta_o = *layout_.angles[kThetaO];
-      ReadNumber(lines, theta_o, columns[theta_o].name, cells[theta_o]);  // throws
-    }
-    lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
-               "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
-               " to " + columns.back().name);
+  // The values of a row, of which one counts for all.
+  Rgb Channels() const {
+    const size_t n = numbers_.size();
+    return {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
   }
 
   // Whether a line may stand between rows: a comment, the header once more, or one that gives
@@ -242,22 +171,11 @@ class TableReader {
     return std::ranges::equal(cells, first_names_);
   }
 
-  double Number(const TextLines& lines, size_t column) {
-    if (is_numbers_) return row_[column];
-    if (const auto number = ToNumber(cells_[column])) return *number;
-    if (const auto number = DecimalCommaNumber(cells_[column])) {
-      decimal_commas_ = true;
-      return *number;
-    }
-    if (const auto number = OddNumber(cells_[column])) return *number;
-    lines.FailAt(column, layout_.columns[column].name, WhyNoNumber(cells_[column]));
-  }
-
   // [rad]; `missing` without a column.
   double AngleOf(const TextLines& lines, Angle angle, const AngleRange& range, double missing) {
     const std::optional<size_t> column = layout_.angles[angle];
     if (!column) return missing;
-    return ReadAngle(lines, *column, layout_.columns[*column].name, Number(lines, *column),
+    return ReadAngle(lines, *column, layout_.columns[*column].name, row_.Number(lines, *column),
                      layout_.units[angle], range);
   }
 
@@ -268,16 +186,38 @@ class TableReader {
     return -theta;
   }
 
+  // Of wo from that of wi, by cos g = cos theta_i cos theta_o + sin theta_i sin theta_o cos phi.
+  double AzimuthByPhase(const TextLines& lines) {
+    constexpr double kRounding = 2;  // degrees of three rounded angles
+    const size_t column = *layout_.phase;
+    const TableColumn& named = layout_.columns[column];
+    const double phase = ReadAngle(lines, column, named.name, row_.Number(lines, column),
+                                   RadiansIn(named.unit).value_or(1), {-180, 180});
+    const double theta_i = std::abs(theta_i_), theta_o = std::abs(theta_o_);
+    const double least = RadiansToDegrees(std::abs(theta_i - theta_o));
+    const double most = RadiansToDegrees(std::min(theta_i + theta_o, 2 * kPi - theta_i - theta_o));
+    const double degrees = RadiansToDegrees(std::abs(phase));
+    if (degrees < least - kRounding || degrees > most + kRounding) {
+      lines.FailAt(column, named.name,
+                   Text(degrees) + " deg is no angle between these directions, which are " +
+                       Text(least) + " to " + Text(most) + " deg apart");
+    }
+    const double sines = std::sin(theta_i_) * std::sin(theta_o_);
+    if (std::abs(sines) < 1e-12) return 0;
+    const double cosine = (std::cos(phase) - std::cos(theta_i_) * std::cos(theta_o_)) / sines;
+    return std::acos(std::clamp(cosine, -1.0, 1.0));
+  }
+
   SphericalAngles Angles(const TextLines& lines, bool turned) {
     constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
     theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
-    theta_o_ = AngleOf(lines, kThetaO, kTheta, 0);
+    theta_o_ = AngleOf(lines, kThetaO, kTheta, given_theta_o_);
     if (layout_.from_mirror) theta_o_ += theta_i_;
     SphericalAngles at;
     at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
-    at.phi_o = AngleOf(lines, kPhiO, kPhi, 0);
+    at.phi_o = layout_.phase ? at.phi_i + AzimuthByPhase(lines) : AngleOf(lines, kPhiO, kPhi, 0);
     signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
-    in_plane_ &= at.phi_i == at.phi_o;
+    in_plane_ &= at.phi_i == at.phi_o && !layout_.phase;
     if (!phi_i_) phi_i_ = at.phi_i;
     one_phi_i_ &= at.phi_i == *phi_i_;
     at.theta_i = Unsigned(theta_i_, &at.phi_i);
@@ -288,11 +228,11 @@ class TableReader {
 
   // Takes the values of the row; false where none was measured.
   bool Values(const TextLines& lines) {
-    const auto is_gap = [&](size_t column) { return !is_numbers_ && IsGap(cells_[column]); };
+    const auto is_gap = [&](size_t column) { return row_.IsGapAt(column); };
     if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
     for (size_t k = 0; k < numbers_.size(); ++k) {
       const size_t column = layout_.values[k];
-      numbers_[k] = Linear(layout_.columns[column].scale, Number(lines, column));
+      numbers_[k] = Linear(layout_.columns[column].scale, row_.Number(lines, column));
     }
     return true;
   }
@@ -315,61 +255,74 @@ class TableReader {
     constexpr double kShortest = 0.2, kLongest = 20;  // [um]
     const size_t column = *layout_.wavelength;
     const std::string& unit = layout_.columns[column].unit;
-    const double number = Number(lines, column);
+    const double number = row_.Number(lines, column);
     const bool micrometres =
         unit == "um" || (unit.empty() && number >= kShortest && number <= kLongest);
     return micrometres ? 1000 * number : number;
   }
 
-  void AddToRows(const TextLines& lines, const SphericalAngles& angles, SpectraOfRows* by_rows) {
-    const double wavelength = WavelengthOf(lines);
+  // [nm], of a row; 0 without. A spectrum may be `by_rows`; else all have the same.
+  double CheckedWavelength(const TextLines& lines, bool by_rows) {
+    if (!layout_.wavelength) return 0;
     const size_t column = *layout_.wavelength;
-    if (!(wavelength > 0 && std::isfinite(wavelength))) {
-      lines.FailAt(column, layout_.columns[column].name, "expected a wavelength in nm");
-    }
-    if (!by_rows->Add(angles, wavelength, numbers_[0])) {
-      lines.Fail("this is one wavelength more than the " +
-                 std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum");
-    }
-  }
-
-  // Rows with several values must all have the same wavelength.
-  void CheckWavelength(const TextLines& lines) {
-    if (!layout_.wavelength) return;
+    const std::string& name = layout_.columns[column].name;
     const double wavelength = WavelengthOf(lines);
+    if (by_rows) {
+      if (wavelength > 0 && std::isfinite(wavelength)) return wavelength;
+      lines.FailAt(column, name, "expected a wavelength in nm");
+    }
     if (!wavelength_) wavelength_ = wavelength;
-    if (wavelength == *wavelength_) return;
-    lines.FailAt(*layout_.wavelength, layout_.columns[*layout_.wavelength].name,
+    if (bands_ || wavelength == *wavelength_) return wavelength;
+    lines.FailAt(column, name,
                  Text(wavelength) + " comes after " + Text(*wavelength_) +
                      "; make a column of each wavelength, as 550nm, or a file of each");
+  }
+
+  void AddToRows(const TextLines& lines, const SphericalAngles& angles, double wavelength,
+                 SpectraOfRows* by_rows) {
+    if (by_rows->Add(angles, wavelength, numbers_[0])) return;
+    lines.Fail("this is one wavelength more than the " +
+               std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum");
   }
 
   // Whether the table has the layout that this library writes, once the only one that it read.
   bool IsUsual() const {
     return head_.separator == ',' && !head_.in_comment && head_.lines_before == 0 &&
-           lines_after_ == 0 && options_.columns.empty() && !signed_ && !decimal_commas_ &&
+           lines_after_ == 0 && options_.columns.empty() && !signed_ && !row_.decimal_commas() &&
            layout_.HasAllAngles() &&
            std::ranges::all_of(layout_.columns, &TableColumn::is_usual_name);
   }
 
   std::string Note(bool turned) const;
 
+  std::string NoteOnRepeated() const {
+    const std::string& name = layout_.columns[*apart_].name;
+    const int lack = repeated_.incomplete();
+    return "column '" + name + "' (" + repeated_.Kinds() +
+           ") tells rows of the same directions apart: their mean is taken" +
+           (lack > 0 ? ", " + std::to_string(lack) + " directions that lack one are left out"
+                     : "") +
+           "; --rows=" + name + "=CELL reads one alone";
+  }
+
   const std::string& source_;
   const SourceOptions& options_;
-  std::optional<double> given_theta_i_;   // [rad] by a flag, or above the rows
+  std::optional<double> given_theta_i_;  // [rad] by a flag, or above the rows
+  double given_theta_o_;                 // [rad] by a flag
+  GivenAngles given_;
   std::vector<std::string> first_names_;  // of the header, without units
   TableHead head_;
+  TextLines header_;  // at its line
   ColumnLayout layout_;
-  size_t num_read_ = 0;  // columns up to the last that is read
-  std::vector<std::string_view> cells_;
-  std::vector<double> row_;  // in the place of cells, where a row is but numbers
-  bool is_numbers_ = false;
+  TableRow row_;
+  RowChoice choice_;
+  std::optional<size_t> apart_;  // the column of the kinds of repeated rows
+  RepeatedRows repeated_;
   std::vector<double> numbers_;               // the values of a row
   double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
   std::optional<double> phi_i_, wavelength_;  // of the first row
   std::optional<SpectrumBands> bands_;        // of spectra
   bool in_plane_ = true, signed_ = false, one_phi_i_ = true, by_brightness_ = false;
-  bool decimal_commas_ = false;
   double block_theta_i_ = 0, block_phi_i_ = 0;  // [rad] of rows that do not have them
   bool has_blocks_ = false;
   int lines_after_ = 0;  // of text, behind the rows
@@ -390,7 +343,7 @@ std::string TableReader::Note(bool turned) const {
   say(head_.separator == '\t', "tabs");
   say(head_.separator == '|', "bars");
   say(head_.separator == ' ', "blanks");
-  say(decimal_commas_, "decimal commas");
+  say(row_.decimal_commas(), "decimal commas");
   for (const std::string& renamed : RenamedColumns(layout_)) say(true, renamed);
   say(layout_.HasAnglesIn(kPi / 180), "degrees");
   say(layout_.HasAnglesIn(1), "radians");
@@ -399,10 +352,12 @@ std::string TableReader::Note(bool turned) const {
     say(has_blocks_, "theta_i by lines between the rows");
     say(!has_blocks_, "theta_i = " + Text(RadiansToDegrees(*given_theta_i_)) + " deg");
   }
+  say(!layout_.angles[kThetaO], "theta_o = " + Text(options_.theta_o_deg) + " deg");
   say(!layout_.angles[kPhiI], "phi_i = 0");
   const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
                                   : "theta_o > 0 on the side of the light";
-  const bool by_side = (!layout_.angles[kPhiO] && !layout_.from_mirror) || by_brightness_;
+  const bool by_side = (!HasAzimuths() && !layout_.from_mirror) || by_brightness_;
+  say(layout_.phase.has_value(), "azimuths by the angle between the directions");
   say(layout_.from_mirror,
       "theta_o as theta_i and that angle, > 0 from the mirror direction away from the normal");
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
@@ -415,6 +370,7 @@ std::string TableReader::Note(bool turned) const {
   say(scale == ValueScale::kLn, "logarithms as e^x");
   say(bands_.has_value() && layout_.wavelength, "a row a wavelength");
   if (bands_) say(true, bands_->Note());
+  say(!options_.rows.empty(), "rows of " + options_.rows);
   say(lines_after_ > 0, Lines(lines_after_) + " after the table");
   say(true, "f in 1/sr");
   if (!layout_.left_out.empty()) note += "; left out: " + LeftOutColumns(layout_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/formats/column_words.h"
 #include "io/formats/table_lines.h"
 #include "trilobe/core/base/error.h"
 
@@ -61,19 +62,19 @@ std::vector<std::string> SplitNames(std::string_view line, char separator) {
 
 // Context in which names stand.
 struct Place {
-  bool in_comment, theta_i_is_given;
+  bool in_comment, theta_is_given;
 };
 
 // Number of names that are known; 0 if they are not those of a table. Prose contains some, too.
 int NamesKnown(const std::vector<std::string>& names, char separator, const Place& place) {
   int known = 0;
   bool has_angle = false, has_value = false;
-  for (const std::string& name : names) {
-    const ColumnRole role = ColumnNamed(name).role;
+  for (const TableColumn& column : ColumnsNamed(names)) {
+    const ColumnRole role = column.role;
     known += role != ColumnRole::kOther ? 1 : 0;
     has_angle |= role == ColumnRole::kThetaI || role == ColumnRole::kThetaO ||
                  role == ColumnRole::kFromMirror ||
-                 (role == ColumnRole::kTheta && place.theta_i_is_given);
+                 (role == ColumnRole::kTheta && place.theta_is_given);
     has_value |= role >= ColumnRole::kRed && role <= ColumnRole::kBand;
   }
   const bool is_prose = (place.in_comment && !has_value) ||
@@ -113,6 +114,16 @@ std::optional<std::string_view> CommentOf(std::string_view line) {
 
 bool IsNumber(std::string_view cell) {
   return ToNumber(cell).has_value() || DecimalCommaNumber(cell).has_value();
+}
+
+// Whether a line of numbers above the rows says how many there are, and is none of them.
+bool IsLineOfCounts(std::string_view line, size_t cells_read) {
+  if (line.find_first_not_of("0123456789,;| \t") != std::string_view::npos) return false;
+  std::vector<std::string_view> cells;
+  return std::ranges::none_of(kSeparators, [&](char separator) {
+    SplitRow(line, separator, &cells);
+    return cells.size() >= cells_read;
+  });
 }
 
 }  // namespace
@@ -183,7 +194,7 @@ std::vector<std::string> NamesOfFirstLine(std::string_view line) {
 }
 
 std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,
-                                       bool theta_i_is_given) {
+                                       bool theta_is_given) {
   std::optional<TableHead> head;  // in a comment
   TextLines lines(text, source);
   for (int before = 0; before < kMostLinesBefore && lines.NextWithComment();) {
@@ -191,7 +202,7 @@ std::optional<TableHead> FindTableHead(std::string_view text, const std::string&
     const std::string_view line =
         comment ? *comment : Trimmed(lines.line().substr(0, lines.line().find('#')));
     std::optional<Names> found;
-    if (!GivenAngleIn(line)) found = NamesIn(line, {comment.has_value(), theta_i_is_given});
+    if (!GivenAngleIn(line)) found = NamesIn(line, {comment.has_value(), theta_is_given});
     if (found) {
       // A column of indices may have no name.
       if (lines.whole_line().starts_with('\t')) found->names.insert(found->names.begin(), "");
@@ -212,19 +223,62 @@ std::optional<TableHead> FindTableHead(std::string_view text, const std::string&
 TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view text,
                       const std::string& source) {
   TableHead by_names{.lines = TextLines(text, source), .names = names};
-  if (const std::optional<TableHead> head = FindTableHead(text, source, /*theta_i_is_given=*/true);
+  if (const std::optional<TableHead> head = FindTableHead(text, source, /*theta_is_given=*/true);
       head && !head->in_comment) {
     by_names.lines = head->lines;
     by_names.lines_before = head->lines_before;
     return by_names;
   }
+  size_t read = names.size();
+  while (read > 0 && (names[read - 1].empty() || names[read - 1] == "-")) --read;
   const size_t fewest = std::min(names.size(), kFewestNumbers);
   for (TextLines next = by_names.lines; next.Next() && by_names.lines_before < kMostLinesBefore;) {
-    if (LooksLikeRow(next.line(), fewest)) return by_names;
+    if (LooksLikeRow(next.line(), fewest) && !IsLineOfCounts(next.line(), read)) return by_names;
     by_names.lines = next;
     ++by_names.lines_before;
   }
   throw Error(source + ": no line holds numbers for --columns");
+}
+
+std::vector<size_t> PositionsOf(std::string_view name, const std::vector<std::string>& names) {
+  const std::string wanted = Plain(name);
+  std::vector<size_t> called, begun;
+  for (size_t k = 0; k < names.size(); ++k) {
+    std::string plain = Plain(names[k]);
+    if (plain == wanted) called.push_back(k);
+    TakeBracket(&plain);
+    if (Trimmed(plain) == wanted) begun.push_back(k);
+  }
+  return called.empty() ? begun : called;
+}
+
+TableHead TableHeadWith(const std::vector<std::string>& wanted, std::string_view text,
+                        const std::string& source) {
+  TextLines lines(text, source);
+  TableHead best{.lines = lines};
+  size_t most = 0;
+  for (int before = 0; before < kMostLinesBefore && lines.NextWithComment();) {
+    const std::optional<std::string_view> comment = CommentOf(lines.line());
+    const std::string_view line = comment ? *comment : lines.line();
+    const bool is_row = !comment && LooksLikeRow(line);  // a header of wavelengths may, too
+    for (const char separator : kSeparators) {
+      std::vector<std::string> names = SplitNames(line, separator);
+      const auto found = static_cast<size_t>(std::ranges::count_if(
+          wanted, [&](const std::string& name) { return !PositionsOf(name, names).empty(); }));
+      if (found <= most || (is_row && found < wanted.size())) continue;
+      most = found;
+      best = {.lines = lines,
+              .names = std::move(names),
+              .separator = separator,
+              .in_comment = comment.has_value(),
+              .lines_before = before};
+    }
+    if (most == wanted.size() || is_row) break;
+    if (!comment) ++before;
+  }
+  if (most > 0) return best;
+  throw Error(source + ": no line above the rows names a column '" + wanted.front() +
+              "', as --columns does");
 }
 
 void GoToRows(TableHead* head) {

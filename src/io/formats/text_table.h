@@ -21,14 +21,22 @@ struct TableHead {
 };
 
 // Looks for the first line that names columns of angles and others, or for the last of comments
-// before the first row. None if there is none. "theta" alone is an angle if `theta_i_is_given`.
+// before the first row. None if there is none. "theta" alone is an angle if `theta_is_given`.
 std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,
-                                       bool theta_i_is_given);
+                                       bool theta_is_given);
 
-// The same for a table whose columns have these names, in the place of those of a header. Throws
-// Error if no line could be a row.
+// The same for a table whose columns have these names, in the place of those of a header. A line of
+// fewer whole numbers than are read stands before the rows. Throws Error if no line could be a row.
 TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view text,
                       const std::string& source);
+
+// Positions of the columns of this name, "Angle" of "Angle [deg]", too, where none is called just
+// that.
+std::vector<size_t> PositionsOf(std::string_view name, const std::vector<std::string>& names);
+
+// The head whose line has the most columns of these names. Throws Error if no line has one.
+TableHead TableHeadWith(const std::vector<std::string>& wanted, std::string_view text,
+                        const std::string& source);
 
 // The separator of the first row after the head, which may be another than that of the header; goes
 // beyond a line of units and adds these to the names.

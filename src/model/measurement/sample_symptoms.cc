@@ -203,10 +203,7 @@ std::string TellHighlight(const BrdfSamples& samples) {
 }
 
 std::string TellReflected(const BrdfSamples& samples) {
-  std::vector<double> albedos;
-  for (const ReflectedAtLeast& one : ReflectedLightOf(samples)) albedos.push_back(one.albedo);
-  const double of_all = albedos.empty() ? 0 : Quantile(&albedos, 0.5);
-  const double albedo = std::max(of_all, ReflectedLightOfScans(samples));
+  const double albedo = std::max(MedianReflected(samples), ReflectedLightOfScans(samples));
   if (!(albedo > 1.1)) return "";
   const std::string more = Sentence(
       "at least ", albedo, " times as much light comes back as fell (median of the incidences), ");
@@ -233,15 +230,26 @@ std::string TellRepeated(const BrdfSamples& samples, bool anisotropic) {
       "write the angles with their signs, or phi_o = 180 on the mirror's side");
 }
 
-std::string TellLargest(const BrdfSamples& samples) {
-  const LargestValueSymptom largest = LargestValueOf(samples);
-  if (largest.IsMark(samples.size())) {
+std::vector<int> NumbersBelow(const LargestValueSymptom& largest, const BrdfSamples& samples) {
+  std::vector<int> numbers;
+  for (int j = 0; j < samples.size(); ++j) {
+    const double times = largest.of_signal ? std::cos(samples.directions[j].theta_i) : 1;
+    const bool is_below = std::ranges::all_of(samples.rho[j], [&](double value) {
+      return times * value <= largest.value * (1 - kSameValue);
+    });
+    if (is_below) numbers.push_back(j);
+  }
+  return numbers;
+}
+
+std::string TellLargest(const LargestValueSymptom& largest, int samples) {
+  if (largest.IsMark(samples)) {
     return Sentence(
         "the value ", largest.value, " is there ", largest.samples, " times, and is ",
         largest.over_next,
         " times the next one: it seems to mark what was not measured; leave these lines out");
   }
-  if (largest.IsPlateau(samples.size())) {
+  if (largest.IsPlateau(samples)) {
     return Sentence("the largest value is there ", largest.samples,
                     " times, as where a detector is saturated: highlights are brighter than that");
   }
@@ -338,6 +346,12 @@ std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
   return reflected;
 }
 
+double MedianReflected(const BrdfSamples& samples) {
+  std::vector<double> albedos;
+  for (const ReflectedAtLeast& one : ReflectedLightOf(samples)) albedos.push_back(one.albedo);
+  return albedos.empty() ? 0 : Quantile(&albedos, 0.5);
+}
+
 RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotropic) {
   constexpr double kStep = 1e-6;  // [rad]
   const auto key = [&](int j) {
@@ -391,7 +405,8 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
                .samples = count,
                .angles = static_cast<int>(std::max(theta_h.size(), theta_i.size())),
                .over_next = next > 0 ? largest / next : std::numeric_limits<double>::infinity(),
-               .is_nines = !of_signal && IsNines(largest)};
+               .is_nines = !of_signal && IsNines(largest),
+               .of_signal = of_signal};
     }
   }
   return found;
@@ -399,12 +414,21 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
 
 std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
   CheckDirections(scattered);
+  const LargestValueSymptom largest = LargestValueOf(scattered.samples);
+  if (largest.IsMark(scattered.samples.size())) {
+    // Marks are no light; what else is wrong, the other samples tell.
+    Measurement measured = scattered;
+    measured.samples = Selected(scattered.samples, NumbersBelow(largest, scattered.samples));
+    std::vector<std::string> told = SymptomsOfSamples(measured);
+    told.insert(told.begin(), TellLargest(largest, scattered.samples.size()));
+    return told;
+  }
   std::vector<std::string> told = {TellNegative(scattered.counts)};
   if (scattered.samples.size() > 0) {
     const BrdfSamples some = EvenlySpread(scattered.samples, kMostSamples);
     told.push_back(TellAngles(some));
     told.push_back(TellReflected(some));
-    told.push_back(TellLargest(scattered.samples));
+    told.push_back(TellLargest(largest, scattered.samples.size()));
     told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
     // If directions lack a sign, no other sentence about directions is right.
     if (told.back().empty()) {

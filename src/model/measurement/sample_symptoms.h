@@ -49,6 +49,8 @@ struct ReflectedAtLeast {
   double albedo = 0;   // mean over the channels
 };
 std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples);
+// The median over the incidences; 0 without.
+double MedianReflected(const BrdfSamples& samples);
 
 // The same where the plane of incidence was scanned on both sides: in rings about the normal or, if
 // that is more, about the mirror direction, as bright as the darker of the two places where the
@@ -72,7 +74,7 @@ struct LargestValueSymptom {
   double value = 0;
   int samples = 0, angles = 0;
   double over_next = 1;
-  bool is_nines = false;
+  bool is_nines = false, of_signal = false;
   bool IsMark(int valid) const {
     return samples >= 2 && samples <= valid / 2 && (over_next >= 20 || is_nines);
   }

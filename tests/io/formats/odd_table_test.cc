@@ -268,6 +268,37 @@ TEST(OddTable, ColumnsThatHoldSomethingElseAreNamed) {
   EXPECT_NEAR(asked.samples.rho[0][0], 1 / std::cos(DegreesToRadians(10)), 1e-12);
 }
 
+// The angle g between the directions, as astronomers have it, gives the azimuth.
+TEST(OddTable, AzimuthsByThePhase) {
+  // 1e-12 in cos g is 1e-6 in the azimuth.
+  const auto close = [](const Measurement& is, double degrees) {
+    const SphericalAngles& at = is.samples.directions[0];
+    EXPECT_NEAR(RadiansToDegrees(std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi))), degrees,
+                1e-3);
+  };
+  for (const char* const header :
+       {"i,e,g,BRDF\n", "incidence,emission,phase,f\n", "i_deg,e_deg,g_deg,BRDF\n",
+        "theta_i,theta_o,phase angle [deg],f\n"}) {
+    SCOPED_TRACE(header);
+    close(Read(std::string(header) + "20,10,10,1\n"), 0);
+    close(Read(std::string(header) + "20,10,30,1\n"), 180);
+    close(Read(std::string(header) + "20,10,22.26874,1\n"), 90);
+    close(Read(std::string(header) + "20,10,30.4,1\n"), 180);  // rounded
+    EXPECT_THAT(
+        ReadError(std::string(header) + "20,10,40,1\n"),
+        HasSubstr("): 40 deg is no angle between these directions, which are 10 to 30 deg"));
+  }
+  EXPECT_THAT(Read("i,e,g,BRDF\n20,10,25,1\n").notes,
+              ElementsAre(HasSubstr("'i' as theta_i, 'e' as theta_o")));
+  EXPECT_THAT(Read("i,e,g,BRDF\n20,10,25,1\n").notes,
+              ElementsAre(HasSubstr("azimuths by the angle between the directions")));
+  // Beside an azimuth it is left out, and g beside r and b is green.
+  EXPECT_THAT(Read("i,e,phi,phase,BRDF\n20,10,90,25,1\n").notes,
+              ElementsAre(HasSubstr("left out: 'phase'")));
+  EXPECT_EQ(Read("i,theta_i,theta_o,f,e\n1,20,10,5,0.1\n").samples.rho[0][0], 5);
+  EXPECT_EQ(Read("i,e,phi,r,g,b\n20,10,90,1,2,3\n").samples.rho[0], (Rgb{1, 2, 3}));
+}
+
 TEST(OddTable, AScanWithoutThetaIAsksForIt) {
   const std::string scan = "angle\tvalue\n-10\t1\n10\t2\n";
   EXPECT_THAT(ReadError(scan), HasSubstr("no column theta_i; --theta_i=DEGREES gives it"));

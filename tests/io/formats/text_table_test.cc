@@ -142,24 +142,6 @@ TEST(TextTable, NamesOfAngles) {
   }
 }
 
-TEST(TextTable, ASignIsNoPartOfAWavelength) {
-  for (const std::string name : {"-550nm", "\u2212550", "lambda=-550nm"}) {
-    EXPECT_EQ(ColumnNamed(name).role, ColumnRole::kOther) << name;
-  }
-  EXPECT_EQ(ColumnNamed("brdf-550nm").wavelength, 550);
-  EXPECT_THAT(ReadError("theta_i,theta_o,-550nm\n5,10,1\n"), HasSubstr("no column of values"));
-  const Measurement measured = Read("theta_i,theta_o,-450nm,550nm\n5,10,1,2\n");
-  EXPECT_THAT(measured.samples.rho, ElementsAre(Rgb{2, 2, 2}));
-  EXPECT_THAT(measured.notes.front(), HasSubstr("left out: '-450nm'"));
-}
-
-TEST(TextTable, AWavelengthMayNotStandTwice) {
-  const std::string text = "theta_i,theta_o,550nm,0.55um,650nm\n5,10,1,2,3\n";
-  for (const char* const bands : {"", "550"}) {
-    EXPECT_THAT(ReadError(text, {.bands = bands}), HasSubstr("'550nm' and '0.55um' say the same"));
-  }
-}
-
 // 10 MB of commas are refused before they are a gigabyte of cells.
 TEST(TextTable, ALineHasABoundedNumberOfCells) {
   const std::string commas(300000, ','), table = "theta_i,theta_o,f\n5,10,1\n";
@@ -373,6 +355,32 @@ TEST(TextTable, AnglesThatHaveNoColumn) {
               ElementsAre(HasSubstr("--theta_i is of tables without a column theta_i")));
   EXPECT_THAT(ReadError("theta_o,phi_o,r,g,b\n20,180,1,2,3\n"),
               HasSubstr("line 1: the header has no column theta_i; --theta_i=DEGREES gives it"));
+}
+
+TEST(TextTable, ADetectorMayStandStill) {
+  const SourceOptions at_45 = {.theta_o_deg = 45};
+  const Measurement given = Read("theta_i,phi_o,r,g,b\n20,180,1,2,3\n", at_45);
+  ExpectSameSamples(given, Read("theta_i,phi_i,theta_o,phi_o,r,g,b\n20,0,45,180,1,2,3\n"));
+  EXPECT_THAT(given.notes, ElementsAre("read as: degrees, theta_o = 45 deg, phi_i = 0, f in 1/sr"));
+  // An angle that the header does not tell is the other one; its signs are as those of theta_o.
+  for (const char* const name : {"theta_i", "angle", "theta"}) {
+    ExpectSameSamples(Read(std::string(name) + ";brdf\n20;1\n-20;0,5\n", at_45),
+                      Read("theta_i,phi_i,theta_o,phi_o,f\n20,0,45,180,1\n-20,0,45,180,0.5\n"));
+  }
+  EXPECT_THAT(Read(kPlain, at_45).notes,
+              ElementsAre(HasSubstr("--theta_o is of tables without a column theta_o")));
+  EXPECT_THAT(ReadError("theta_i,phi_o,r,g,b\n20,180,1,2,3\n"),
+              HasSubstr("line 1: the header has no column theta_o; --theta_o=DEGREES gives it"));
+  EXPECT_THAT(ReadError(kPlain, {.theta_o_deg = 90}), HasSubstr("--theta_o is 90"));
+}
+
+TEST(TextTable, BothAnglesMayBeGiven) {
+  const SourceOptions options = {.theta_i_deg = 10, .theta_o_deg = 45};
+  const Measurement given = Read("phi_o,f\n180,1\n90,2\n", options);
+  ExpectSameSamples(given, Read("theta_i,phi_i,theta_o,phi_o,f\n10,0,45,180,1\n10,0,45,90,2\n"));
+  EXPECT_THAT(Source("synth:felt@2x4").Read(options).notes,
+              ElementsAre(HasSubstr("--theta_i is of text tables"),
+                          HasSubstr("--theta_o is of text tables")));
 }
 
 TEST(TextTable, ColumnsMayBeNamed) {

@@ -191,6 +191,18 @@ TEST(SampleSymptoms, MarksAndPlateausAreTold) {
               ElementsAre(HasSubstr("a detector is saturated")));
 }
 
+// Near the normal they are the brightest samples, and all light is percents of them.
+TEST(SampleSymptoms, MarksLeaveNothingElseToTell) {
+  const auto mark = [](double times) {
+    return Told([times](SphericalAngles* at, double* rho) {
+      *rho = at->theta_o < 0.2 ? 9999 : times * *rho;
+    });
+  };
+  EXPECT_THAT(mark(1), testing::ElementsAre(HasSubstr("the value 9999 is there")));
+  EXPECT_THAT(mark(100), testing::ElementsAre(HasSubstr("the value 9999 is there"),
+                                              HasSubstr("times as much light comes back")));
+}
+
 TEST(SampleSymptoms, NinesAreAMarkBesideValuesAsLarge) {
   int k = 0;
   EXPECT_THAT(Told([&](SphericalAngles*, double* rho) {

@@ -12,16 +12,18 @@
 namespace trilobe {
 
 // How a source is read and which of its samples count as measured. `noise` is for `synth:` only,
-// `extrapolated` for RGL files, `radiometry` for UTIA files, `columns` and `theta_i_deg` for text
-// tables, `bands` for spectra, `azimuth_from_mirror` for scattered samples; for other sources they
-// only add a note to the measurement.
+// `extrapolated` for RGL files, `radiometry` for UTIA files, `columns`, `rows`, `theta_i_deg`
+// and `theta_o_deg` for text tables, `bands` for spectra, `azimuth_from_mirror` for scattered
+// samples; for other sources they only add a note to the measurement.
 struct SourceOptions {
   double noise = 0.0;        // relative standard deviation of multiplicative noise, 0 to 1
   double missing = 0.0;      // fraction of bins or samples removed at random, in [0, 1)
   std::string corrupt = {};  // corruptions to apply (ParseCorruptions), seeded by `seed`
   double cosine = 0;         // exponent of a factor cos theta_i to remove, -2 to 2
   double cosine_o = 0;       // the same of cos theta_o
-  double scale = 1;          // factor of all values, above 0
+  // Factor of all values; 0 stands for 1 that nobody gave: given, it says what values called
+  // reflectance are.
+  double scale = 0;
   // Azimuths phi_o of scattered samples are counted from the mirror direction, phi_i + 180 degrees.
   bool azimuth_from_mirror = false;
   // Tilt of the sample towards azimuth 0, to remove; nullopt: estimated from the highlight.
@@ -36,9 +38,13 @@ struct SourceOptions {
   bool outliers = false;            // keeps samples far from their neighbours
   bool dark_noise = false;          // keeps readings of a table that are lost in dark noise
   std::string radiometry = "brdf";  // of UtiaRadiometries()
-  // Names of the columns of a text table, "theta_i,theta_o,f", in the place of those of its header.
+  // Names of the columns of a text table, "theta_i,theta_o,f", in the place of those of its header,
+  // or some with these, "theta_i=Angle,f=Value".
   std::string columns = {};
+  // The rows of a text table with these cells, "polarization=s,sample=2"; "": all.
+  std::string rows = {};
   double theta_i_deg = -1;  // of a text table without a column theta_i, 0 to below 90; -1: none
+  double theta_o_deg = -1;  // the same of theta_o
   // Wavelengths [nm] of spectra, "650,550,450": one for all channels, three as r, g and b, the
   // longest as r, or more to make a colour of; "": all.
   std::string bands = {};

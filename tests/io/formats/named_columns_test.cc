@@ -1,0 +1,94 @@
+// Columns that --columns names.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/test_directory.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Measurement Read(const std::string& text, const SourceOptions& options) {
+  return Source("x.txt", text).Read(options);
+}
+
+std::string ReadError(const std::string& text, const SourceOptions& options) {
+  return ErrorOf([&] { Read(text, options); });
+}
+
+const std::string kRows = "a,30,7,10,0.25\nb,30,8,20,0.5\n";
+const std::string kTable = "Operator,InAngle,T [K],OutAngle [deg],Value\n" + kRows;
+
+TEST(NamedColumns, AHeaderTellsWhichTheyAre) {
+  for (const std::string& text : {kTable, "# a paint\n# " + kTable, "Goniometer 7\n" + kTable}) {
+    const Measurement read = Read(text, {.columns = "f=Value,theta_i=InAngle,theta_o=outangle"});
+    ASSERT_EQ(read.samples.rho, (std::vector<Rgb>{{0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}})) << text;
+    EXPECT_NEAR(RadiansToDegrees(read.samples.directions[1].theta_i), 30, 1e-12);
+    EXPECT_NEAR(RadiansToDegrees(read.samples.directions[1].theta_o), 20, 1e-12);
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("left out: 'Operator', 'T [K]'")));
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("columns by --columns, 'InAngle' as theta_i")));
+  }
+}
+
+TEST(NamedColumns, UnitsOfTheHeaderCount) {
+  const Measurement read = Read("In (rad);Out_rad;Value [dB]\n0.5;0.25;10\n",
+                                {.columns = "theta_i=In,theta_o=Out_rad,f=Value"});
+  EXPECT_EQ(read.samples.directions[0].theta_i, 0.5);
+  EXPECT_EQ(read.samples.directions[0].theta_o, 0.25);
+  EXPECT_EQ(read.samples.rho[0][0], 10);
+}
+
+TEST(NamedColumns, AFlagSaysThatAReflectanceIsF) {
+  EXPECT_EQ(Read("theta_i,theta_o,Reflectance\n30,10,0.25\n",
+                 {.columns = "theta_i,theta_o,f=Reflectance"})
+                .samples.rho[0][0],
+            0.25);
+}
+
+TEST(NamedColumns, WhatTheHeaderHasNotIsTold) {
+  EXPECT_EQ(ReadError(kTable, {.columns = "theta_i=InAngel,theta_o=OutAngle,f=Value"}),
+            "x.txt: line 1: --columns names 'InAngel', and the header has 'Operator', 'InAngle', "
+            "'T [K]', 'OutAngle [deg]', 'Value'");
+  EXPECT_EQ(ReadError(kTable, {.columns = "theta_i=a,f=b"}),
+            "x.txt: no line above the rows names a column 'a', as --columns does");
+  EXPECT_THAT(ReadError(kTable, {.columns = "theta_i=InAngle,theta_o=InAngle,f=Value"}),
+              HasSubstr("--columns names 'InAngle', twice"));
+  EXPECT_THAT(ReadError("In,In,f\n1,2,3\n", {.columns = "theta_i=In,f=f"}),
+              HasSubstr("'In', which the header has 2 times"));
+  EXPECT_THAT(ReadError(kTable, {.columns = "theta_i=,f=Value"}),
+              HasSubstr("'theta_i=' names no column of the header"));
+  EXPECT_THAT(ReadError(kTable, {.columns = "theta_i=InAngle,f=Value"}),
+              HasSubstr("line 1: the header has no column theta_o; --theta_o=DEGREES gives it"));
+}
+
+TEST(NamedColumns, AnUnknownNameIsRefused) {
+  const std::string known = "' says of no column what it holds; known are theta_i, phi_i";
+  EXPECT_THAT(ReadError("a,b\n1,2\n3,4\n", {.columns = "a,b"}),
+              HasSubstr("--columns=a,b: 'a" + known));
+  EXPECT_THAT(ReadError(kTable, {.columns = "-,theta_i,cheese,theta_o,f"}),
+              HasSubstr("'cheese" + known));
+  EXPECT_THAT(ReadError(kTable, {.columns = "theta_i=InAngle,theta_x=OutAngle,f=Value"}),
+              HasSubstr("'theta_x" + known));
+  EXPECT_EQ(Read(kTable, {.columns = ",theta_i,-,theta_o,f"}).samples.size(), 2);
+}
+
+TEST(NamedColumns, CountsMayStandBeforeTheRows) {
+  const std::string rows = "30 10 0 0.25\n30 20 0 0.5\n";
+  const SourceOptions options = {.columns = "theta_i,theta_o,phi_o,f"};
+  for (const char* const counts : {"2\n", "1 2 1\n", "2 4\n1 2 1\n"}) {
+    EXPECT_EQ(Read(counts + rows, options).samples.size(), 2) << counts;
+  }
+  EXPECT_THAT(Read("1 2 1\n" + rows, options).notes,
+              ElementsAre(HasSubstr("1 line before the header")));
+  // A row that breaks off is none.
+  EXPECT_THAT(ReadError("30 10 0.5\n" + rows, options), HasSubstr("x.txt: line 1: "));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
