@@ -57,6 +57,9 @@ quietly copies scripts/check_copies.sh
 step "Doing what a newcomer does, in an inconvenient place"
 scripts/check_anywhere.sh
 
+step "Giving each flag of each command a value"
+tests/flags/sweep.py
+
 step "Breaking runs of the program"
 tests/faults/harness.py --trials="${1:-400}"
 

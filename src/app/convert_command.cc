@@ -126,6 +126,7 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
                 "for UTIA's directions, or in .csv");
   }
   Measurement measurement = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
+  NoteUnread(options, "model", &measurement);
   CorruptBy(options, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
@@ -164,11 +165,12 @@ void WriteAt(const std::string& source) {
   if (!IsModelFile(source)) throw Error(source + ": --at goes with a model");
   if (EndingOf(FLAGS_out) != ".csv") throw Error("--at goes with an --out that ends in .csv");
   Inputs({source, FLAGS_at}).CheckOutput(FLAGS_out);
-  const SourceOptions options = SourceOptionsFromFlags();
+  SourceOptions options = SourceOptionsFromFlags();
+  options.may_lack_values = true;
   const ModelFile file = ModelOfSource(source);
   if (FLAGS_spectral && !file.spectral) throw Error(NotSpectral(source));
   const FactorModel& model = file.model;
-  const Measurement measurement = MeasurementOfSource(FLAGS_at, options);
+  Measurement measurement = MeasurementOfSource(FLAGS_at, options);
   PrintNotes(measurement);
   const BrdfSamples samples = SamplesOf(measurement);
   if (FLAGS_spectral) {
@@ -179,7 +181,16 @@ void WriteAt(const std::string& source) {
     });
     return;
   }
-  WriteBesideCsv(samples, EvaluateSamples(model, samples, options.num_threads), FLAGS_out);
+  std::vector<Rgb> values = EvaluateSamples(model, samples, options.num_threads);
+  if (std::ranges::all_of(samples.rho, [](const Rgb& rho) { return rho == Rgb{}; })) {
+    measurement.table = std::nullopt;
+    measurement.samples = samples;
+    measurement.samples.rho = std::move(values);
+    PrintLine("wrote " + FLAGS_out + ": " + WriteMeasurement(measurement, FLAGS_out) +
+              " of the model");
+    return;
+  }
+  WriteBesideCsv(samples, values, FLAGS_out);
   PrintLine("wrote " + FLAGS_out + ": " + std::to_string(samples.size()) +
             " samples, measured and fitted");
 }

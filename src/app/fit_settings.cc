@@ -155,8 +155,11 @@ FitSettings FitSettingsFromFlags() {
   fit.prior = PriorFromFlags();
   fit.seed = static_cast<uint64_t>(FLAGS_seed);
   fit.solver_options(ModelSpec());  // its errors
-  settings.source = SourceOptionsFromFlags();
-  if (FLAGS_held_out) fit.held_out = settings.source.seed;
+  settings.source = SourceOptionsFromFlags(/*has_starts=*/true);
+  if (FLAGS_held_out) {
+    fit.held_out = settings.source.seed;
+    settings.source.seed_is_for_data = false;
+  }
   settings.convergence = FLAGS_convergence;
   settings.reconstruction = FLAGS_reconstruction;
   settings.plots = settings.view = FLAGS_plots && !IsDefault("plots");

@@ -114,13 +114,14 @@ int ThreadsFromFlags() {
   return std::min(FLAGS_threads, cores);
 }
 
-SourceOptions SourceOptionsFromFlags() {
+SourceOptions SourceOptionsFromFlags(bool has_starts) {
   SourceOptions options = {.seed = static_cast<uint64_t>(FLAGS_seed),
                            .num_threads = ThreadsFromFlags()};
   for (const SourceOption& option : AllSourceOptions()) {
     const auto flag = gflags::GetCommandLineFlagInfoOrDie(option.name.c_str());
     if (flag.current_value != flag.default_value) option.set(flag.current_value, &options);
   }
+  options.seed_is_for_data = !IsDefault("data_seed") || (!has_starts && !IsDefault("seed"));
   CheckSourceOptions(options);
   return options;
 }

@@ -53,8 +53,9 @@ std::string FlagHelp(const std::string& flag);
 // on standard error. Throws Error if negative.
 int ThreadsFromFlags();
 
-// Options for Source::Read. Throws Error for bad values.
-SourceOptions SourceOptionsFromFlags();
+// Options for Source::Read. `has_starts`: --seed is of random starts, too, and need not be of the
+// data. Throws Error for bad values.
+SourceOptions SourceOptionsFromFlags(bool has_starts = false);
 // `others` and the names of the flags that SourceOptionsFromFlags reads.
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others);
 // The names of these flags without --threads.

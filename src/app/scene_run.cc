@@ -64,7 +64,7 @@ SceneFitSettings SceneSettingsFromFlags() {
                             .weighting = FindWeighting(FLAGS_weighting).name,
                             .lobes = FLAGS_lobes,
                             .seed = static_cast<uint64_t>(FLAGS_seed),
-                            .source = SourceOptionsFromFlags(),
+                            .source = SourceOptionsFromFlags(/*has_starts=*/true),
                             .program = ProgramName(),
                             .build = ProgramBuild(),
                             .appearance = AppearanceOptionsFromFlags(),

@@ -47,6 +47,26 @@ TEST(ValuesAt, StandBesideThoseMeasured) {
   EXPECT_FALSE(lines.Next());
 }
 
+TEST(ValuesAt, NeedOnlyDirections) {
+  const TemporaryFolder folder;
+  const std::string model = "material:" + std::string(MaterialNames().at(0)),
+                    csv = folder / "directions.csv", out = folder / "values.csv";
+  std::ofstream(csv) << "theta_i,phi_i,theta_o,phi_o\n10,0,20,180\n60,0,30,90\n60,90,30,180\n";
+  const ProgramResult result = RunProgram({"convert", model, "--at=" + csv, "--out=" + out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Measurement measurement = LoadMeasurement(out);
+  ASSERT_EQ(measurement.samples.size(), 3);
+  const FactorModel factors = LoadModel(model).model;
+  for (int j = 0; j < 3; ++j) {
+    const Rgb value = Evaluate(factors, ToDirections(measurement.samples.directions[j]));
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_NEAR(measurement.samples.rho[j][c], value[c], 1e-12 * value[c]);
+    }
+  }
+  // Other commands ask for values.
+  EXPECT_THAT(RunProgram({"info", csv}).err, HasSubstr("no column of values"));
+}
+
 TEST(ValuesAt, ErrorsSayWhatItGoesWith) {
   const TemporaryFolder folder;
   const std::string model = "material:" + std::string(MaterialNames().at(0));

@@ -29,7 +29,7 @@ VALUES = {
     "convergence": "true", "corrupt": "noise:0.3", "cosine": "1", "d_nodes": "8x24", "dark_noise": "true",
     "data_seed": "7", "diagnose": "true", "error": "true", "extrapolated": "true", "f_bins": "8", "force": "true",
     "g_nodes": "4x12", "held_out": "true", "init": "roughness", "json": "true", "lobes": "2",
-    "match_reflectance": "false", "max_angle": "60", "max_iterations": "6", "max_parameters": "150",
+    "match_reflectance": "false", "rows": "a=b", "max_angle": "60", "max_iterations": "6", "max_parameters": "150",
     "max_seconds": "0.000001", "min_theta_d": "20", "missing": "0.5", "model": "independent", "nocache": "true",
     "nodes": "held_out", "noise": "0.1", "optimality_tolerance": "0.9", "out": None, "outliers": "true",
     "picture": "true", "plots": "true", "prior": "2", "probe": "probe.hdr", "radiometry": "cosine", "raw": "true",
@@ -115,7 +115,7 @@ class Sweep:
         material = {"name": "a", "source": TABLE}
         (self.room / "scene.json").write_text(
             json.dumps({"format": "trilobe-scene", "version": 1, "materials": [material]}))
-        (self.room / "at.csv").write_text("theta_i,phi_i,theta_o,phi_o\n10,0,20,30\n")
+        (self.room / "at.csv").write_text("theta_i,phi_i,theta_o,phi_o,f\n10,0,20,30,1\n")
         pixels = b"".join(bytes([100, 50 + k % 90, 90, 128]) for k in range(64 * 32))
         (self.room / "probe.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n" + pixels)
 

@@ -28,7 +28,7 @@ class ColumnLayouter {
 
   ColumnLayout Lay(const GivenAngles& given, bool prefers_bands) {
     LayAngles(given);
-    LayValues(prefers_bands);
+    LayValues(prefers_bands, /*may_lack=*/given.values);
     for (size_t k = 0; k < is_read_.size(); ++k) {
       if (!is_read_[k]) layout_.left_out.push_back(k);
     }
@@ -99,7 +99,7 @@ class ColumnLayouter {
                 "' is neither in degrees nor in radians or gon; convert it");
   }
 
-  void LayValues(bool prefers_bands) {
+  void LayValues(bool prefers_bands, bool may_lack) {
     const auto red = All(Role::kRed), green = All(Role::kGreen), blue = All(Role::kBlue);
     const auto values = All(Role::kValue), bands = All(Role::kBand);
     layout_.wavelength = One(Role::kWavelength);
@@ -123,7 +123,7 @@ class ColumnLayouter {
     } else if (const std::optional<size_t> other = OtherBrdf()) {
       layout_.values = {*other};
       is_read_[*other] = true;
-    } else {
+    } else if (!may_lack) {
       FailWithout("of values",
                   std::string(", as r, g, b, or brdf, or wavelengths as 550nm; --columns=") +
                       kUsualColumns + " names columns, - those to leave out");
@@ -193,6 +193,7 @@ std::string LeftOutColumns(const ColumnLayout& layout) {
 }
 
 bool MayBeFactor(const ColumnLayout& layout, bool by_flag) {
+  if (layout.values.empty()) return false;
   const TableColumn& first = layout.columns[layout.values[0]];
   const bool is_r = layout.values.size() == 1 && first.role == Role::kRed && !first.per_steradian;
   return (is_r && !by_flag) || std::ranges::any_of(layout.values, [&](size_t k) {

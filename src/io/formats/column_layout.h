@@ -37,9 +37,11 @@ struct ColumnLayout {
 std::vector<std::string> RenamedColumns(const ColumnLayout& layout);
 std::string LeftOutColumns(const ColumnLayout& layout);
 
-// Which angles have a value for all rows, and need no column.
+// What needs no column: angles that have a value for all rows, and values where directions alone
+// are asked for.
 struct GivenAngles {
   bool theta_i = false, theta_o = false;
+  bool values = false;
 };
 
 // Whether the names leave open if values are f, or pi f as most of what is called reflectance is:

@@ -136,14 +136,6 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
   return formats.front();  // MERL: it says what is wrong with its header
 }
 
-// Notes which of the options that were given cannot change this measurement.
-void NoteUnread(const SourceOptions& options, std::string_view reader, Measurement* measurement) {
-  for (const SourceOption* const given : GivenOptions(options)) {
-    if (given->applies == nullptr || given->applies(reader, *measurement)) continue;
-    measurement->notes.push_back(given->of + ", and changes nothing here");
-  }
-}
-
 // Applies `change`, which notes what it does, unless an option keeps the readings. An option that
 // keeps them from nothing is noted instead.
 void ChangeUnless(bool kept, const std::string& what, Measurement* measurement,
@@ -209,6 +201,15 @@ double ShownTilt(Measurement* measurement) {
 }
 
 }  // namespace
+
+void NoteUnread(const SourceOptions& options, std::string_view reader, Measurement* measurement) {
+  for (const SourceOption* const given : GivenOptions(options)) {
+    const bool applies = given->applies == nullptr || given->applies(reader, *measurement);
+    const bool is_used = given->is_used == nullptr || given->is_used(options);
+    if (applies && is_used) continue;
+    measurement->notes.push_back(given->of + ", and changes nothing here");
+  }
+}
 
 void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
@@ -364,6 +365,12 @@ Measurement Source::Read(const SourceOptions& options) const {
   CheckSourceOptions(options);
   Measurement measurement = synthetic() ? Synthesized(options) : Parsed(options);
   CorruptBy(options, &measurement);
+  const BrdfSamples& samples = measurement.samples;
+  if (options.may_lack_values && !measurement.table &&
+      std::ranges::all_of(samples.rho, [](const Rgb& rho) { return rho == Rgb{}; })) {
+    DecideMeasured(options, &measurement);
+    return measurement;
+  }
   // Judged by all that was measured: within a limit there may be no light to hold the shadow
   // against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);

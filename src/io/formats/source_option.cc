@@ -104,6 +104,10 @@ void SetDataSeed(std::string_view text, SourceOptions* options) {
   if (error != std::errc() || parsed != end) Fail("data_seed", text, "an integer from 0");
 }
 
+bool IsSeedUsed(const SourceOptions& of) {
+  return !of.seed_is_for_data || of.noise > 0 || of.missing > 0 || !of.corrupt.empty();
+}
+
 bool IsSynth(std::string_view reader, const Measurement& /*measurement*/) {
   return reader == "synth:";
 }
@@ -173,6 +177,8 @@ std::vector<SourceOption> MakeOptions() {
                "and --corrupt; if given, --seed varies the start alone, on the same data; by "
                "default the value of --seed",
        .default_value = "",
+       .of = "--data_seed, by default --seed, is of --noise, --missing and --corrupt",
+       .is_used = IsSeedUsed,
        .changes_values = true,
        .set = SetDataSeed,
        .get = [](const Options& of) { return std::to_string(of.seed); }},

@@ -23,6 +23,8 @@ struct SourceOption {
   // whether it can change this measurement, which a reader of this name has read ("utia").
   std::string of = {};
   bool (*applies)(std::string_view reader, const Measurement& measurement) = nullptr;
+  // Whether the other options leave it anything to change; null: they do.
+  bool (*is_used)(const SourceOptions& options) = nullptr;
   // Whether it changes directions and values, so that a model that is written as a measurement
   // may have it, too; else it is for readers of files.
   bool changes_values = false;

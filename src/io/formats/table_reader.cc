@@ -35,7 +35,9 @@ class TableReader {
         given_theta_i_(options.theta_i_deg != -1 ? DegreesToRadians(options.theta_i_deg)
                                                  : ThetaIBeforeRows(text)),
         given_theta_o_(DegreesToRadians(std::max(options.theta_o_deg, 0.0))),
-        given_{.theta_i = given_theta_i_.has_value(), .theta_o = options.theta_o_deg != -1},
+        given_{.theta_i = given_theta_i_.has_value(),
+               .theta_o = options.theta_o_deg != -1,
+               .values = options.may_lack_values},
         head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
         header_(head_.lines),
         layout_(Layout()),
@@ -149,6 +151,7 @@ class TableReader {
   // The values of a row, of which one counts for all.
   Rgb Channels() const {
     const size_t n = numbers_.size();
+    if (n == 0) return {0, 0, 0};
     return {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
   }
 
@@ -229,6 +232,7 @@ class TableReader {
   // Takes the values of the row; false where none was measured.
   bool Values(const TextLines& lines) {
     const auto is_gap = [&](size_t column) { return row_.IsGapAt(column); };
+    if (layout_.values.empty()) return true;
     if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
     for (size_t k = 0; k < numbers_.size(); ++k) {
       const size_t column = layout_.values[k];
@@ -364,7 +368,8 @@ std::string TableReader::Note(bool turned) const {
   say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
   const bool is_one = bands_ ? bands_->read().size() == 1 : layout_.values.size() == 1;
   say(is_one, "one value for all channels");
-  const ValueScale scale = layout_.columns[layout_.values[0]].scale;
+  const ValueScale scale =
+      layout_.values.empty() ? ValueScale::kLinear : layout_.columns[layout_.values[0]].scale;
   say(scale == ValueScale::kDecibels, "decibels as 10^(dB/10)");
   say(scale == ValueScale::kLog10, "logarithms as 10^x");
   say(scale == ValueScale::kLn, "logarithms as e^x");

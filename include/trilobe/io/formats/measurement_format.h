@@ -29,6 +29,7 @@ struct SourceOptions {
   // Tilt of the sample towards azimuth 0, to remove; nullopt: estimated from the highlight.
   std::optional<double> tilt_deg = 0;
   uint64_t seed = 1;
+  bool seed_is_for_data = false;  // whoever gave it means random changes: a note if there are none
   int num_threads = 1;
   double max_angle_deg = 90;  // larger theta_i and theta_o do not count as measured; above 0
   // Smaller theta_d do not count as measured; -1: the limit at which scattered samples show the
@@ -48,6 +49,8 @@ struct SourceOptions {
   // Wavelengths [nm] of spectra, "650,550,450": one for all channels, three as r, g and b, the
   // longest as r, or more to make a colour of; "": all.
   std::string bands = {};
+  // A text table may have directions alone; its values are 0, and all count.
+  bool may_lack_values = false;
   // Readings are copied: as if `outliers` and `dark_noise` were set, which change nothing then.
   bool as_they_are = false;
 };

@@ -64,6 +64,10 @@ struct SynthSource {
 };
 SynthSource SynthSourceOf(std::string_view name);
 
+// A step of Source::Read: notes which of the options that were given cannot change a measurement
+// that a reader of this name has read ("utia").
+void NoteUnread(const SourceOptions& options, std::string_view reader, Measurement* measurement);
+
 // A step of Source::Read: applies SourceOptions::corrupt, then removes `tilt_deg`, `cosine` and
 // `cosine_o`, multiplies by `scale` and turns azimuths.
 void CorruptBy(const SourceOptions& options, Measurement* measurement);
