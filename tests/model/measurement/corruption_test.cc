@@ -337,7 +337,7 @@ TEST(Corruption, WhatLeavesNoSampleSaysSo) {
 
 TEST(Corruption, SamplesThatCannotBeReadBetweenSaySo) {
   EXPECT_THAT(MessageOf([&] { Corrupted(kScattered, "noise:0.1,tilt:1"); }),
-              HasSubstr("name these first"));
+              HasSubstr("--tilt and the corruptions tilt, origin"));
   EXPECT_EQ(MessageOf([&] { Corrupted(kScattered, "tilt:1,noise:0.1"); }), "");
 }
 
