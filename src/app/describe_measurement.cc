@@ -252,6 +252,7 @@ void DescribeScattered(const Measurement& measurement) {
                {"reciprocity_error", ToJson(reciprocity)},
                {"reflects_at_least", ToJson(reflected)},
                {"anisotropy", anisotropy ? ToJson(*anisotropy) : Json()},
+               {"cannot_be_checked", UndecidedIn(measurement)},
                {"notes", measurement.notes}});
     return;
   }
@@ -292,6 +293,9 @@ void DescribeScattered(const Measurement& measurement) {
       change += "; beyond noise " + Text(100 * std::max(0.0, anisotropy->smooth_share), 3) + " %";
     }
     PrintLine("anisotropy", change);
+  }
+  if (const std::string undecided = UndecidedIn(measurement); !undecided.empty()) {
+    PrintLine("cannot be checked", undecided);
   }
   if (!picture.empty()) PrintLine("written", picture);
   for (const std::string& note : measurement.notes) PrintLine("note", note);

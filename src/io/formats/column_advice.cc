@@ -269,6 +269,10 @@ std::string AdviceOnAngles(const std::vector<TableColumn>& columns) {
            "a theta_i, of those in its name";
   }
   const bool half = Has(columns, "thetah") || Has(columns, "thetahalf");
+  if (half && (Has(columns, "d") || Has(columns, "ndf"))) {
+    return "this is a distribution of normals D(theta_h), of a model's tables; a BRDF is measured "
+           "at many pairs of directions";
+  }
   if (half && (Has(columns, "thetad") || Has(columns, "thetadiff"))) {
     return "theta_h and theta_d are angles of the half and difference vectors; make them theta_i, "
            "phi_i, theta_o, phi_o, or write an ALTA file (#PARAM_IN RUSIN_TH_TD_PD)";

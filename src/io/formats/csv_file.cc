@@ -82,6 +82,7 @@ std::string WriteCsv(const Measurement& measurement, const std::string& path, in
 bool LooksLikeCsv(std::string_view text) {
   constexpr size_t kLongest = 1 << 16;
   text = text.substr(0, kLongest);
+  if (text.starts_with("TracePro")) return false;  // has such a line further on
   return FindTableHead(text, "", /*theta_is_given=*/false).has_value() || HasAxes(text);
 }
 

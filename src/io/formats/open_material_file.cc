@@ -35,12 +35,14 @@ class OpenMaterialTable {
   OpenMaterialTable(std::string_view text, const std::string& source) : source_(source) {
     const JsonValue file = JsonValue::Parse(text, source, kTableLimits);
     const JsonValue* const brdf = Member(file, "brdf", JsonValue::Type::kObject);
+    ReadUnit(*brdf);
     const JsonValue* const table = Member(*brdf, "lookupTable", JsonValue::Type::kArray);
     for (size_t k = 0; k < table->size(); ++k) AddRow((*table)[k], k);
     if (bands_.empty()) throw Error(source + ": lookupTable has no rows");
   }
 
   const std::vector<OpenMaterialBand>& bands() const { return bands_; }
+  bool in_decibels() const { return in_decibels_; }
 
  private:
   const JsonValue* Member(const JsonValue& object, const char* key, JsonValue::Type type) const {
@@ -51,6 +53,17 @@ class OpenMaterialTable {
                   "', as the schema material_brdf of OpenMATERIAL 3D has it");
     }
     return member;
+  }
+
+  // Decibels are those of a Lambertian white, f = 1 / pi.
+  void ReadUnit(const JsonValue& brdf) {
+    const JsonValue* const unit = brdf.Find("amplitudeUnit");
+    if (unit == nullptr) return;
+    const std::string text =
+        unit->type() == JsonValue::Type::kString ? unit->string() : unit->type_name();
+    in_decibels_ = text == "dB";
+    if (in_decibels_ || text == "1/sr" || text == "sr^-1") return;
+    throw Error(source_ + ": amplitudeUnit is " + text + ", and dB and 1/sr alone are read");
   }
 
   void AddRow(const JsonValue& row, size_t index) {
@@ -70,6 +83,7 @@ class OpenMaterialTable {
       }
       numbers[k] = is_null ? kNoValue : row[k].number();
     }
+    if (in_decibels_) numbers.back() = std::pow(10, numbers.back() / 10) / kPi;
     const auto& [wavelength, theta_i, theta_o, phi_o, value] = numbers;
     if (!(wavelength >= 1e-9 && wavelength <= 0.1)) fail("the first number is no wavelength in m");
     constexpr double kRounding = 1e-4;
@@ -89,6 +103,7 @@ class OpenMaterialTable {
   }
 
   std::string source_;
+  bool in_decibels_ = false;
   std::vector<OpenMaterialBand> bands_;
 };
 
@@ -128,6 +143,7 @@ Measurement ParseOpenMaterial(std::string_view text, const std::string& source,
   measurement.bands = spectra.all();
   measurement.notes.push_back(
       "read as: " + spectra.Note() +
+      (table.in_decibels() ? ", decibels of a Lambertian white as 10^(dB/10) / pi" : "") +
       ", azimuths from that of the light; --azimuth=from_mirror takes them from the mirror "
       "direction");
   return measurement;

@@ -70,6 +70,12 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
     }
     while (head.lines.line().starts_with('%') && head.lines.Next()) {
     }
+    constexpr size_t kOfCuret = 206;  // a sample's number, and its value at each direction
+    if (SplitCells(head.lines.line(), ' ').size() == kOfCuret) {
+      head.lines.Fail(
+          "a line of 206 numbers, as CUReT's list of 61 samples at 205 directions has them, which "
+          "another file names: make a table a sample, theta_i,phi_i,theta_o,phi_o,f");
+    }
     if (LooksLikeRow(head.lines.line(), 2)) {
       head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
                       " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "

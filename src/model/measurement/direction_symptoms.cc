@@ -89,6 +89,7 @@ CosineSymptom CosineOf(const BrdfTable& table) {
     return std::log(pair.cosines.i / pair.cosines.o);
   };
   CosineSymptom symptom{
+      .is_decided = true,
       .exponent = MedianOf(pairs, [&](const auto& pair) { return pair.LogRatio() / apart(pair); }),
       .error = ErrorOf(pairs)};
   const double nearer = symptom.exponent > 0 ? 1 : -1;
@@ -205,6 +206,53 @@ TiltSymptom TiltOf(const BrdfTable& table) {
 
 namespace {
 
+// Whether samples near the mirror direction were measured, and are much darker than the brightest.
+bool MirrorSideIsDark(const BrdfSamples& samples, const std::vector<int>& numbers, double largest) {
+  constexpr double kNear = 10, kAcross = 30;  // degrees
+  constexpr double kDarker = 3;
+  bool measured = false;
+  for (const int j : numbers) {
+    const SphericalAngles& at = samples.directions[j];
+    const double azimuth = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
+    if (std::abs(at.theta_o - at.theta_i) > DegreesToRadians(kNear)) continue;
+    if (azimuth < kPi - DegreesToRadians(kAcross)) continue;
+    measured = true;
+    if (kDarker * Mean(samples.rho[j]) > largest) return false;
+  }
+  return measured;
+}
+
+}  // namespace
+
+HighlightSymptom HighlightOf(const BrdfSamples& samples) {
+  constexpr double kBrighter = 3, kStrong = 10;
+  constexpr size_t kFewest = 8;
+  HighlightSymptom symptom;
+  for (const auto& [step, numbers] : ByIncidence(samples)) {
+    if (numbers.size() < kFewest) continue;
+    std::vector<double> values;
+    for (const int j : numbers) values.push_back(Mean(samples.rho[j]));
+    const int brightest = numbers[std::ranges::max_element(values) - values.begin()];
+    const SphericalAngles& at = samples.directions[brightest];
+    const double largest = Mean(samples.rho[brightest]);
+    if (at.theta_i < DegreesToRadians(20) || !(largest > kBrighter * Quantile(&values, 0.5))) {
+      continue;
+    }
+    ++symptom.incidences;
+    symptom.is_strong =
+        largest > kStrong * Quantile(&values, 0.5) && MirrorSideIsDark(samples, numbers, largest);
+    symptom.at_normal += at.theta_o < at.theta_i / 2 ? 1 : 0;
+    symptom.at_light +=
+        at.theta_o > DegreesToRadians(10) &&
+                std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi)) < DegreesToRadians(30)
+            ? 1
+            : 0;
+  }
+  return symptom;
+}
+
+namespace {
+
 double LogarithmicSpread(std::vector<double>* logarithms) {
   return Quantile(logarithms, 0.9) - Quantile(logarithms, 0.1);
 }
@@ -243,7 +291,8 @@ AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
   }
   constexpr size_t kFewestIncidences = 2;  // one may stand near a highlight
   if (inner.size() < kFewestIncidences) return {};
-  return {.near_normal = UpperMedian(inner), .near_horizon = UpperMedian(outer)};
+  return {
+      .is_decided = true, .near_normal = UpperMedian(inner), .near_horizon = UpperMedian(outer)};
 }
 
 namespace {

@@ -82,17 +82,6 @@ double MedianOverPairs(const std::vector<ExchangedSamples>& pairs, const Number&
 
 // --- incidences ---
 
-// The samples of about one theta_i, by their numbers.
-std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples) {
-  std::map<int, std::vector<int>> incidences;
-  for (int j = 0; j < samples.size(); ++j) {
-    constexpr double kStep = 5;
-    incidences[static_cast<int>(RadiansToDegrees(samples.directions[j].theta_i) / kStep)].push_back(
-        j);
-  }
-  return incidences;
-}
-
 // Points that are spread evenly over the projected hemisphere (Fibonacci's spiral on the disc), of
 // which each stands for pi / count of the sum over cos theta_o.
 std::vector<Direction> CosinePoints(int count) {
@@ -289,11 +278,22 @@ std::string TellNegative(const BinCounts& counts) {
 
 }  // namespace
 
+std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples) {
+  std::map<int, std::vector<int>> incidences;
+  for (int j = 0; j < samples.size(); ++j) {
+    constexpr double kStep = 5;
+    incidences[static_cast<int>(RadiansToDegrees(samples.directions[j].theta_i) / kStep)].push_back(
+        j);
+  }
+  return incidences;
+}
+
 CosineSymptom CosineOf(const BrdfSamples& samples) {
   constexpr size_t kFewestPairs = 20;
   const std::vector<ExchangedSamples> pairs = ExchangedSamplesOf(samples);
   if (pairs.size() < kFewestPairs) return {};
   CosineSymptom symptom{
+      .is_decided = true,
       .exponent = MedianOverPairs(
           pairs, [](const auto& pair) { return pair.log_ratio / pair.log_cosines; }),
       .error = MedianOverPairs(pairs, [](const auto& pair) { return std::abs(pair.log_ratio); })};
@@ -301,30 +301,6 @@ CosineSymptom CosineOf(const BrdfSamples& samples) {
   symptom.error_without = MedianOverPairs(pairs, [&](const auto& pair) {
     return std::abs(pair.log_ratio - nearer * pair.log_cosines);
   });
-  return symptom;
-}
-
-HighlightSymptom HighlightOf(const BrdfSamples& samples) {
-  constexpr double kBrighter = 3;
-  constexpr size_t kFewest = 8;
-  HighlightSymptom symptom;
-  for (const auto& [step, numbers] : ByIncidence(samples)) {
-    if (numbers.size() < kFewest) continue;
-    std::vector<double> values;
-    for (const int j : numbers) values.push_back(Mean(samples.rho[j]));
-    const int brightest = numbers[std::ranges::max_element(values) - values.begin()];
-    const SphericalAngles& at = samples.directions[brightest];
-    const double largest = Mean(samples.rho[brightest]);
-    if (at.theta_i < DegreesToRadians(20) || !(largest > kBrighter * Quantile(&values, 0.5))) {
-      continue;
-    }
-    ++symptom.incidences;
-    symptom.at_normal += at.theta_o < at.theta_i / 2 ? 1 : 0;
-    symptom.at_light +=
-        at.theta_o > DegreesToRadians(10) && std::abs(AzimuthFromLight(at)) < DegreesToRadians(30)
-            ? 1
-            : 0;
-  }
   return symptom;
 }
 
@@ -440,6 +416,23 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
   }
   std::erase(told, "");
   return told;
+}
+
+std::string UndecidedIn(const Measurement& scattered) {
+  CheckDirections(scattered);
+  if (scattered.samples.size() == 0) return "";
+  const BrdfSamples some = EvenlySpread(scattered.samples, kMostSamples);
+  std::vector<std::string> undecided;
+  if (!CosineOf(some).is_decided) undecided.emplace_back("cosines (few exchanged directions)");
+  if (!HighlightOf(some).IsDecided()) {
+    undecided.emplace_back("where azimuths and theta_o are counted from (no clear highlight)");
+  }
+  if (!AzimuthsOf(some).is_decided) {
+    undecided.emplace_back("elevations (few azimuths near the normal and the horizon)");
+  }
+  std::string text;
+  for (const std::string& one : undecided) text += (text.empty() ? "" : "; ") + one;
+  return text;
 }
 
 }  // namespace trilobe

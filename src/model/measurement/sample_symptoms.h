@@ -1,6 +1,7 @@
 #ifndef TRILOBE_MODEL_MEASUREMENT_SAMPLE_SYMPTOMS_H_
 #define TRILOBE_MODEL_MEASUREMENT_SAMPLE_SYMPTOMS_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,11 +24,15 @@ struct HighlightSymptom {
   int at_light = 0;    // of these, with it within 30 degrees of the azimuth of the light, and not
                        // within 10 degrees of the normal
   int at_normal = 0;   // nearer to the normal than half of theta_i
+  // The last is above ten times the median, and three times what was measured at the mirror
+  // direction. One such tells as much as two others.
+  bool is_strong = false;
   bool IsAtLight() const { return IsMost(at_light); }
   bool IsAtNormal() const { return IsMost(at_normal); }
+  bool IsDecided() const { return incidences >= 2 || (incidences == 1 && is_strong); }
 
  private:
-  bool IsMost(int count) const { return count >= 2 && 5 * count >= 4 * incidences; }
+  bool IsMost(int count) const { return IsDecided() && count > 0 && 5 * count >= 4 * incidences; }
 };
 HighlightSymptom HighlightOf(const BrdfSamples& samples);
 
@@ -36,6 +41,7 @@ HighlightSymptom HighlightOf(const BrdfSamples& samples);
 // percentile) at theta_o up to 25 and from 65 degrees on, where no mirror direction is. Angles from
 // the horizon in the place of those from the normal exchange the two.
 struct AzimuthSymptom {
+  bool is_decided = false;  // samples stand at such azimuths
   double near_normal = 0, near_horizon = 0;
   bool IsElevation() const { return near_normal > 0.1 && near_normal > 1.35 * near_horizon; }
 };
@@ -83,6 +89,13 @@ struct LargestValueSymptom {
   }
 };
 LargestValueSymptom LargestValueOf(const BrdfSamples& samples);
+
+// The numbers of the samples of about one theta_i, by steps of 5 degrees.
+std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples);
+
+// What the samples cannot tell of, and why: the symptoms above that they decide neither way. Empty
+// if there is none.
+std::string UndecidedIn(const Measurement& scattered);
 
 // One sentence per symptom; empty if nothing looks wrong.
 std::vector<std::string> SymptomsOfSamples(const Measurement& scattered);

@@ -15,6 +15,7 @@ namespace trilobe {
 // log(cos theta_i / cos theta_o). k is the median ratio of the two, over pairs whose cosines differ
 // by a factor of at least 1.5.
 struct CosineSymptom {
+  bool is_decided = false;  // exchanged directions were measured
   double exponent = 0;
   // Medians of |log(rho / rho exchanged)| over these pairs, as measured and after dividing by the
   // cosines with k = 1 or -1, the nearer one.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/io/formats/known_truth.h"
@@ -64,6 +65,19 @@ TEST(OpenMaterialFile, NoValueIsAGap) {
       Parse(Document("[9e-7, 0.1, 0.2, 0, null], [9e-7, 0.1, 0.3, 0, 0.25]"));
   EXPECT_EQ(measurement.counts.missing, 1);
   EXPECT_EQ(measurement.counts.valid, 1);
+}
+
+TEST(OpenMaterialFile, DecibelsAreThoseOfALambertianWhite) {
+  const auto text = [](const std::string& unit) {
+    return R"({"brdf": {"lookupTable": [[9e-07, 0.1, 0.2, 3, -3], [9e-07, 0.1, 0.3, 3, 0]],)"
+           R"( "amplitudeUnit": ")" +
+           unit + "\"}}";
+  };
+  const Measurement measurement = Parse(text("dB"));
+  EXPECT_NEAR(measurement.samples.rho[0][1], std::pow(10, -0.3) / kPi, 1e-12);
+  EXPECT_NEAR(measurement.samples.rho[1][1], 1 / kPi, 1e-12);
+  EXPECT_THAT(measurement.notes[0], HasSubstr("decibels of a Lambertian white"));
+  EXPECT_THAT(ParseError(text("furlong")), HasSubstr("amplitudeUnit is furlong"));
 }
 
 TEST(OpenMaterialFile, ErrorsSayWhereAndWhatIsExpected) {

@@ -95,6 +95,44 @@ void WriteElevations(SphericalAngles* at, double* rho) {
 }
 
 // Light from several azimuths hides no fault.
+// The samples of one theta_i.
+Measurement OneIncidence(double theta_i, Measurement measurement) {
+  std::vector<int> numbers;
+  for (int j = 0; j < measurement.samples.size(); ++j) {
+    if (std::abs(measurement.samples.directions[j].theta_i - theta_i) < 1e-6) numbers.push_back(j);
+  }
+  measurement.samples = Selected(measurement.samples, numbers);
+  return measurement;
+}
+
+TEST(SampleSymptoms, OneIncidenceTellsIfItsHighlightIsStrong) {
+  const auto turn = [](SphericalAngles* at, double*) {
+    at->phi_o = std::remainder(at->phi_o + kPi, 2 * kPi);
+  };
+  const double theta_i = DegreesToRadians(45);
+  EXPECT_THAT(SymptomsOfSamples(OneIncidence(theta_i, Goniometer(turn))),
+              ElementsAre(AllOf(HasSubstr("--azimuth=from_mirror"), HasSubstr("1 of 1"))));
+  const auto keep = [](SphericalAngles*, double*) {};
+  EXPECT_THAT(SymptomsOfSamples(OneIncidence(theta_i, Goniometer(keep))), IsEmpty());
+  // A weak one may be chance.
+  const auto turn_weak = [&](SphericalAngles* at, double* rho) {
+    turn(at, rho);
+    *rho = std::pow(*rho, 0.3);
+  };
+  EXPECT_THAT(SymptomsOfSamples(OneIncidence(theta_i, Goniometer(turn_weak))), IsEmpty());
+}
+
+TEST(SampleSymptoms, WhatCannotBeCheckedIsSaid) {
+  const auto keep = [](SphericalAngles*, double*) {};
+  const Measurement whole = Goniometer(keep);
+  EXPECT_EQ(UndecidedIn(whole), "");
+  const std::string one = UndecidedIn(OneIncidence(DegreesToRadians(45), whole));
+  EXPECT_THAT(one, AllOf(HasSubstr("cosines (few exchanged directions)"), HasSubstr("elevations")));
+  const auto flatten = [](SphericalAngles*, double* rho) { *rho = 0.2; };
+  EXPECT_THAT(UndecidedIn(Goniometer(flatten)),
+              testing::StartsWith("where azimuths and theta_o are counted from"));
+}
+
 TEST(SampleSymptoms, TurnedSamplesAreToldAsOthersAre) {
   const auto told = [](const auto& change) {
     SampleCollector collector("x.csv", "test");
@@ -337,6 +375,8 @@ TEST(SampleSymptoms, TheSharedCasesAreTold) {
   EXPECT_THAT(told("cosine.csv"), ElementsAre(HasSubstr("--cosine=o:1")));
   EXPECT_THAT(told("phi0_is_specular.csv"), ElementsAre(HasSubstr("--azimuth=from_mirror")));
   EXPECT_THAT(told("turned_cosine.csv"), ElementsAre(HasSubstr("--cosine=o:1")));
+  EXPECT_THAT(told("one_incidence_from_mirror.csv"),
+              ElementsAre(HasSubstr("--azimuth=from_mirror")));
   EXPECT_THAT(told("turned_from_mirror.csv"), ElementsAre(HasSubstr("--azimuth=from_mirror")));
   EXPECT_THAT(told("percent.csv"), ElementsAre(HasSubstr("--scale=0.01")));
   EXPECT_THAT(told("radians.csv"), testing::Contains(HasSubstr("in radians")));
