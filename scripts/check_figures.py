@@ -61,7 +61,7 @@ FILES = ["docs/figures.txt", "experiments/*/figures.txt"]
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
 # Sources that decide how a fit of a table comes out. Left out are sampling by renderers, flags that change a
 # measurement, reports on it, and readers of samples on no grid, by the names of folders before and after they were joined.
-CORRUPTION = ("corruption.cc", "kinds*", "misaligned.cc", "readings*")
+CORRUPTION = ("corrupt*", "kinds*", "misaligned.cc", "readings*")
 FITS = ["src/model", "src/solvers", "src/fit",
         *(f":(exclude)src/model/{name}" for name in
           ("corruption", *(f"measurement/{of}" for of in CORRUPTION), "evaluate/*bsdf*", "evaluate/half_vector_table*",

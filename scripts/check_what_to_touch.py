@@ -141,13 +141,13 @@ def weighting(tree):
 
 def option(tree):
     """An option that halves all values: its member, its row, its meaning, its keyword in Python."""
-    tree.after("include/trilobe/io/formats/measurement_format.h", r"double scale = 1;[^\n]*\n",
+    tree.after("include/trilobe/io/formats/measurement_format.h", r"double cosine_o = 0;[^\n]*\n",
                "  bool made_up = false;  // halves all values\n")
     tree.after("src/io/formats/source_option.cc", r"using Options = SourceOptions;\n  return \{\n", """
       Option<"made_up", &Options::made_up>({.help = "halve all values", .changes_values = true}),
 """)
-    tree.after("src/io/formats/source.cc", r'apply\("scale", options\.scale', " * (options.made_up ? 0.5 : 1)")
-    tree.after("python/trilobe/_fitting/measurement.py", r"    scale: float = 1,\n", "    made_up: bool = False,\n")
+    tree.after("src/io/formats/source.cc", r'apply\("cosine_o", -options\.cosine_o\);\n', '  apply("scale", options.made_up ? 0.5 : 1);\n')
+    tree.after("python/trilobe/_fitting/measurement.py", r"    scale: float = 0,\n", "    made_up: bool = False,\n")
     tree.after("python/trilobe/_fitting/measurement.py", r"        scale=scale,\n", "        made_up=made_up,\n")
 
 

@@ -59,7 +59,7 @@ SourceOptions TakeSourceOptions(int* argc, char** argv) {
     if (found == all.end()) {
       argv[kept++] = argv[k];
     } else {
-      found->set(equals == word.npos ? "true" : word.substr(equals + 1), &options);
+      found->set(equals == std::string_view::npos ? "true" : word.substr(equals + 1), &options);
     }
   }
   *argc = kept;

@@ -18,6 +18,7 @@
 #include "fit/scene/scene_judge.h"
 #include "io/formats/source_option.h"
 #include "model/appearance/verdict.h"
+#include "model/measurement/note_symptoms.h"
 #include "model/objective/gauge.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
@@ -161,7 +162,10 @@ class MaterialFitter {
   }
 
   const Measurement& measured() {
-    if (!measured_) measured_ = Measured();
+    if (!measured_) {
+      measured_ = Measured();
+      if (!is_model_) NoteSymptoms(num_threads_, &*measured_);
+    }
     return *measured_;
   }
 
@@ -335,9 +339,9 @@ class MaterialFitter {
     std::optional<SceneJudge> judge;
     if (by_appearance || settings_.verdicts) judge.emplace(material_, measured(), Appearance());
     if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
-    // A scene that reads few directions may do without physics in the others.
+    // A scene that reads single places may do without physics in the others.
     std::optional<LightLimit> light;
-    if (reads_all_directions()) light.emplace(objective, model);
+    if (!material_.reads_places()) light.emplace(objective, model);
     PrunedModel pruned;
     if (by_appearance) {
       pruned = PruneByAppearance(*judge, objective, WithGuess(Guide(problem, *full), model), model,

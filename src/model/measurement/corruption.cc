@@ -6,8 +6,8 @@
 
 #include "core/base/names.h"
 #include "core/files/text_lines.h"
-#include "model/measurement/kinds.h"
-#include "model/measurement/readings.h"
+#include "model/measurement/corrupted_readings.h"
+#include "model/measurement/corruption_kinds.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 

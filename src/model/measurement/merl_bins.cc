@@ -68,7 +68,8 @@ std::optional<MerlGrid> GridOfSome(const BrdfSamples& samples) {
     const std::array<double, 3> coordinates = CoordinatesOf(at);
     for (size_t k = 0; k < 3; ++k) read[k].push_back(coordinates[k]);
   }
-  const MerlGrid grid = {BinsOf(&read[0]), BinsOf(&read[1]), BinsOf(&read[2])};
+  auto& [theta_h, theta_d, phi_d] = read;
+  const MerlGrid grid = {BinsOf(&theta_h), BinsOf(&theta_d), BinsOf(&phi_d)};
   constexpr int kFewest = 4, kMost = 360;
   for (const int bins : {grid.theta_h, grid.theta_d, grid.phi_d}) {
     if (bins < kFewest || bins > kMost) return std::nullopt;

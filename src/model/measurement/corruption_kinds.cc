@@ -1,4 +1,4 @@
-#include "model/measurement/kinds.h"
+#include "model/measurement/corruption_kinds.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/measurement/kinds.h"
+#include "model/measurement/corruption_kinds.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/directions.h"
 

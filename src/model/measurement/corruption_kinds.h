@@ -1,9 +1,9 @@
-#ifndef TRILOBE_MODEL_MEASUREMENT_KINDS_H_
-#define TRILOBE_MODEL_MEASUREMENT_KINDS_H_
+#ifndef TRILOBE_MODEL_MEASUREMENT_CORRUPTION_KINDS_H_
+#define TRILOBE_MODEL_MEASUREMENT_CORRUPTION_KINDS_H_
 
 #include <cstdint>
 
-#include "model/measurement/readings.h"
+#include "model/measurement/corrupted_readings.h"
 
 // The kinds of corruption; CorruptionKinds() has their formulas.
 
@@ -42,4 +42,4 @@ void RepeatBeyond(double strength, uint64_t seed, Readings* readings);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_MODEL_MEASUREMENT_KINDS_H_
+#endif  // TRILOBE_MODEL_MEASUREMENT_CORRUPTION_KINDS_H_

@@ -1,4 +1,4 @@
-#include "model/measurement/readings.h"
+#include "model/measurement/corrupted_readings.h"
 
 #include <algorithm>
 #include <cmath>
