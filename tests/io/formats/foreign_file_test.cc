@@ -49,9 +49,11 @@ TEST(ForeignFile, IsNamedWithWhatToDo) {
       {"f.parquet", "PAR1\x15\4", "a Parquet file" + kAsCsv},
       {"f.txt",
        "TracePro Surface Property Data\nTemperature\tWavelength\tIncAngle\tBRDF\n300\t1\t2\t3\n",
-       "a TracePro surface property"},
+       "a TracePro surface property, whose format is not public; make its table (ScatterBeta, "
+       "ScatterAzimuth, BRDF) one of theta_i, theta_o and phi_o: beta is the distance of the sines "
+       "of the direction and of the mirror direction"},
       {"f.ssdd", "VERSION 0.2\nDATA_TYPE brdf\nPARAM_TYPE spherical_coordinate_system\n",
-       "a libbsdf .ssdd file"},
+       "a libbsdf .ssdd file, which is not read" + kAsCsv},
       {"f.ies", "IESNA:LM-63-2002\n[TEST] 1\n",
        "an IES file of a luminaire, which is no material; give the measurement of a material"},
       {"f.axf", hdf,

@@ -149,7 +149,8 @@ TEST(OddTable, ColumnsThatAreNoAnglesAreNamed) {
   EXPECT_THAT(error("sample,Gloss 20,Gloss 60,Gloss 85"), HasSubstr("'Gloss 20' is of gloss"));
   EXPECT_THAT(ReadError("Wavelength\tx.asd\n350\t0.1\n351\t0.1\n352\t0.2\n"),
               HasSubstr("this is a spectrum without angles"));
-  EXPECT_THAT(ReadError("theta_h,D\n0,3.5\n2,3.4\n"), HasSubstr("a distribution of normals"));
+  EXPECT_THAT(ReadError("theta_h,D\n0,3.5\n2,3.4\n4,3.3\n6,3.1\n"),
+              HasSubstr("a distribution of normals"));
   std::string line = "1";
   for (int k = 0; k < 205; ++k) line += " 0.05";
   EXPECT_THAT(ReadError(line + "\n" + line + "\n"), HasSubstr("CUReT's list of 61 samples"));

@@ -106,8 +106,9 @@ Measurement OneIncidence(double theta_i, Measurement measurement) {
 }
 
 TEST(SampleSymptoms, OneIncidenceTellsIfItsHighlightIsStrong) {
-  const auto turn = [](SphericalAngles* at, double*) {
+  const auto turn = [](SphericalAngles* at, double* rho) {
     at->phi_o = std::remainder(at->phi_o + kPi, 2 * kPi);
+    *rho *= *rho;
   };
   const double theta_i = DegreesToRadians(45);
   EXPECT_THAT(SymptomsOfSamples(OneIncidence(theta_i, Goniometer(turn))),
@@ -117,7 +118,7 @@ TEST(SampleSymptoms, OneIncidenceTellsIfItsHighlightIsStrong) {
   // A weak one may be chance.
   const auto turn_weak = [&](SphericalAngles* at, double* rho) {
     turn(at, rho);
-    *rho = std::pow(*rho, 0.3);
+    *rho = 0.1 * std::pow(*rho, 0.2);
   };
   EXPECT_THAT(SymptomsOfSamples(OneIncidence(theta_i, Goniometer(turn_weak))), IsEmpty());
 }
