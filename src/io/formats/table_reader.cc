@@ -148,11 +148,11 @@ class TableReader {
     return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
   }
 
-  // The values of a row, of which one counts for all.
+  // The values of a row: one counts for all channels, and of a spectrum the first three.
   Rgb Channels() const {
-    const size_t n = numbers_.size();
-    if (n == 0) return {0, 0, 0};
-    return {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
+    if (numbers_.empty()) return {0, 0, 0};
+    const size_t last = numbers_.size() - 1;
+    return {numbers_[0], numbers_[std::min<size_t>(1, last)], numbers_[std::min<size_t>(2, last)]};
   }
 
   // Whether a line may stand between rows: a comment, the header once more, or one that gives

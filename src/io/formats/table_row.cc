@@ -68,7 +68,8 @@ bool TableRow::TakeCells(const TextLines& lines) {
 // A column that holds a number in each row.
 size_t TableRow::TellingColumn() const {
   const auto& [theta_i, phi_i, theta_o, phi_o] = layout_->angles;
-  return theta_o ? *theta_o : theta_i ? *theta_i : layout_->values[0];
+  if (theta_o || theta_i) return theta_o ? *theta_o : *theta_i;
+  return layout_->values.empty() ? 0 : layout_->values[0];
 }
 
 void TableRow::FailAsRow(const TextLines& lines) const {
