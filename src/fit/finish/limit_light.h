@@ -17,7 +17,7 @@ namespace trilobe {
 // How much light a model of the data may reflect: 1, or what was measured where that is more
 // (AlbedoLimitsOf, AnisotropicAlbedoLimit), at each half degree of theta and each 5 degrees of
 // azimuth. One promise for any model: isotropic or not, of tables, samples or forms, and for
-// a scene unless it reads single places.
+// scenes, but for pruned models of those that read some directions alone.
 class LightLimit {
  public:
   // `fit`: of the data, which says what scattered samples reflect.

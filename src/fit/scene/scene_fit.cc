@@ -339,9 +339,10 @@ class MaterialFitter {
     std::optional<SceneJudge> judge;
     if (by_appearance || settings_.verdicts) judge.emplace(material_, measured(), Appearance());
     if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
-    // A scene that reads single places may do without physics in the others.
+    // A scene that reads few directions may do without physics in the others: a limit there costs
+    // small models much of what they are in those that it reads.
     std::optional<LightLimit> light;
-    if (!material_.reads_places()) light.emplace(objective, model);
+    if (reads_all_directions()) light.emplace(objective, model);
     PrunedModel pruned;
     if (by_appearance) {
       pruned = PruneByAppearance(*judge, objective, WithGuess(Guide(problem, *full), model), model,
