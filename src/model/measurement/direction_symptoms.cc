@@ -265,7 +265,7 @@ AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
     double innermost = 90;             // the least theta_o
   };
   constexpr double kAtNormal = 13;  // beyond it azimuths are far from one another
-  constexpr size_t kFewest = 6;       // values in a ring
+  constexpr size_t kFewest = 6;     // values in a ring
   // By theta_i and phi_i: turned materials may change near the normal.
   std::map<std::pair<int, int>, Rings> incidences;
   for (int j = 0; j < samples.size(); ++j) {
