@@ -262,10 +262,8 @@ double LogarithmicSpread(std::vector<double>* logarithms) {
 AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
   struct Rings {
     std::vector<double> inner, outer;  // logarithms of values
-    double innermost = 90;             // the least theta_o
   };
-  constexpr double kAtNormal = 13;  // beyond it azimuths are far from one another
-  constexpr size_t kFewest = 6;     // values in a ring
+  constexpr size_t kFewest = 6;  // values in a ring
   // By theta_i and phi_i: turned materials may change near the normal.
   std::map<std::pair<int, int>, Rings> incidences;
   for (int j = 0; j < samples.size(); ++j) {
@@ -278,14 +276,12 @@ AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
     const double turn = phi_i - 360 * std::floor(phi_i / 360);
     Rings& rings = incidences[{static_cast<int>((theta_i + kRounding) / kStep),
                                static_cast<int>(turn / kStep)}];
-    rings.innermost = std::min(rings.innermost, theta_o - kRounding);
     if (theta_o < 25 + kRounding) rings.inner.push_back(std::log(mean));
     if (theta_o > 65 - kRounding) rings.outer.push_back(std::log(mean));
   }
   std::vector<double> inner, outer;
   for (auto& [step, rings] : incidences) {
     if (rings.inner.size() < kFewest || rings.outer.size() < kFewest) continue;
-    if (rings.innermost > kAtNormal) continue;
     inner.push_back(LogarithmicSpread(&rings.inner));
     outer.push_back(LogarithmicSpread(&rings.outer));
   }

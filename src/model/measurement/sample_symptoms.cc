@@ -388,14 +388,17 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
   return found;
 }
 
-std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
+namespace {
+
+// `have_gaps`: where there were marks, which often stand at some azimuths near the normal.
+std::vector<std::string> Symptoms(const Measurement& scattered, bool have_gaps) {
   CheckDirections(scattered);
   const LargestValueSymptom largest = LargestValueOf(scattered.samples);
   if (largest.IsMark(scattered.samples.size())) {
     // Marks are no light; what else is wrong, the other samples tell.
     Measurement measured = scattered;
     measured.samples = Selected(scattered.samples, NumbersBelow(largest, scattered.samples));
-    std::vector<std::string> told = SymptomsOfSamples(measured);
+    std::vector<std::string> told = Symptoms(measured, /*have_gaps=*/true);
     told.insert(told.begin(), TellLargest(largest, scattered.samples.size()));
     return told;
   }
@@ -411,11 +414,17 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
       told.push_back(TellHighlight(some));
       // The same holds if the highlight is out of place, and of a cosine that explains all.
       if (told.back().empty()) told.push_back(TellCosine(some));
-      if (told.back().empty()) told.push_back(TellElevation(some));
+      if (told.back().empty() && !have_gaps) told.push_back(TellElevation(some));
     }
   }
   std::erase(told, "");
   return told;
+}
+
+}  // namespace
+
+std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
+  return Symptoms(scattered, /*have_gaps=*/false);
 }
 
 std::string UndecidedIn(const Measurement& scattered) {
