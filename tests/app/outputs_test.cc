@@ -239,7 +239,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   ASSERT_EQ(RunProgram({"synth", "copper", "--out=" + data + "/a & b.binary"}).status, 0);
   std::ofstream(data + "/torn.binary") << "no measurement";
   std::ofstream(data + "/notes.txt") << "no measurement, by its name";
-  std::ofstream(data + "/coating.txt") << "TracePro Surface Property\nVersion 7.0\n";
+  std::ofstream(data + "/coating.txt") << "Made by TracePro\nVersion 7.0\n";
   std::ofstream(data + "/photo.jpg") << "\xFF\xD8\xFF\xE0 JFIF";
   std::ofstream(data + "/empty.dat");
   std::ofstream(data + "/meta.json") << R"({"operator": "me"})";
