@@ -25,8 +25,9 @@ import tempfile
 
 # Another value than its default of each flag; None: not to be given alone.
 VALUES = {
-    "at": "at.csv", "azimuth": "from_mirror", "bands": "550", "cache": "cache", "columns": "theta_i,phi_i,theta_o,phi_o,b,g,r",
-    "convergence": "true", "corrupt": "noise:0.3", "cosine": "1", "d_nodes": "8x24", "dark_noise": "true",
+    "at": "at.csv", "azimuth": "from_mirror", "bands": "550", "cache": "cache",
+    "columns": "theta_i,phi_i,theta_o,phi_o,b,g,r", "convergence": "true", "corrupt": "noise:0.3", "cosine": "1",
+    "d_nodes": "8x24", "dark_noise": "true",
     "data_seed": "7", "diagnose": "true", "error": "true", "extrapolated": "true", "f_bins": "8", "force": "true",
     "g_nodes": "4x12", "held_out": "true", "init": "roughness", "json": "true", "lobes": "2",
     "match_reflectance": "false", "rows": "a=b", "max_angle": "60", "max_iterations": "6", "max_parameters": "150",
@@ -43,9 +44,14 @@ SILENT = {
     "": {"force": "nothing lies in the way", "threads": "results have the same bits for any number",
          "cache": "a fit from the cache is the same", "nocache": "a fit without the cache is the same"},
     "fit": {"seed": "a start by moments and a solver without random starts draw no numbers",
-            "smoothness": "tables may be smooth enough", "match_reflectance": "as much light as was measured"},
+            "smoothness": "tables may be smooth enough", "match_reflectance": "as much light as was measured",
+            "raw": "finishing may change nothing", "max_iterations": "it may converge before",
+            "tolerance": "it may stop by --max_iterations first"},
+    "fit many": {"held_out": "the reports have it"},
+    "plan": {"seed": "as of fit"}, "compare": {"seed": "as of fit", "json": "it is given"},
     "study": {"seed": "as of fit", "smoothness": "as of fit", "match_reflectance": "as of fit",
-              "raw": "finishing may change nothing"},
+              "raw": "as of fit", "max_iterations": "as of fit", "tolerance": "as of fit",
+              "optimality_tolerance": "AWLS does not know it"},
 }
 
 QUICK_FIT = ["--solver=varpro", "--max_iterations=3", "--lobes=1", "--nodiagnose"]
@@ -56,10 +62,10 @@ FITS = {
     "fit scattered": (["fit", SCATTERED, *QUICK_FIT, "--noplots"], "r"),
     "fit anisotropic": (["fit", "synth:linen@4x12", *QUICK_FIT, "--noplots"], "r"),
     "fit many": (["fit", TABLE, "synth:rubber@12x12x24", *QUICK_FIT], "r"),
-    "fit scene": (["fit", "--scene=scene.json", *QUICK_FIT[:3], "--cache=none"], "r"),
+    "fit scene": (["fit", "--scene=scene.json", *QUICK_FIT[:3], "--nocache"], "r"),
     "study": (["study", TABLE, "--solvers=awls", "--runs=1", *QUICK_FIT[1:]], "r"),
-    "plan": (["plan", "scene.json", *QUICK_FIT[:3], "--cache=none"], None),
-    "compare": (["compare", "scene.json", *QUICK_FIT[:3], "--cache=none"], None),
+    "plan": (["plan", "scene.json", *QUICK_FIT[:3], "--nocache"], None),
+    "compare": (["compare", "scene.json", *QUICK_FIT[:3], "--nocache", "--json"], None),
 }
 OTHERS = {
     "score table": (["score", MODEL, TABLE], None),
@@ -76,6 +82,8 @@ OTHERS = {
     "synth": (["synth", "felt@12x12x24"], "x.csv"),
     "view": (["view", MODEL, TABLE], "x.html"),
 }
+# What a command prints of times, in JSON and in words.
+TIMES = r'"\w*seconds\w*": (\{[^}]*\}|[^,\n]*)|seconds .*|\b[0-9.]+ s\b|written .*'
 # Files with times, dates and command lines in them count by their being there.
 TIMED = {"report.json", "plan.json", "plan.txt", "index.html", "view.html", "fits.csv", "methods.csv", "traces.csv",
          "runs.csv", "run.json", "study.json", "lobes.csv"}
@@ -133,16 +141,15 @@ class Sweep:
                          for path in sorted(place.rglob("*")) if path.is_file()}
             elif place and place.exists():
                 files = {"": comparable(place)}
-            printed = re.sub(r"seconds .*|\b[0-9.]+ s\b|written .*", "", done.stdout.replace(folder, ""))
+            printed = re.sub(TIMES, "", done.stdout.replace(folder, ""))
+            printed = re.sub(r" +", " ", printed)  # columns are as wide as their times
             if words[0] in ("plan", "compare") or "--scene=scene.json" in words:  # times in the last columns
-                printed = re.sub(r" [0-9.]+(?= *$|\s+[0-9.]+ *$)", "", printed, flags=re.MULTILINE)
+                printed = re.sub(r"\b[0-9.]+ *$", "", printed, flags=re.MULTILINE)
             return done.returncode, (printed, files), done.stderr.replace(folder, "")
 
     def heard(self, flag, words, out, base):
         """Whether a flag changes what is made, or is named."""
         kept = [word for word in words if not re.fullmatch(rf"--(no)?{flag}(=.*)?", word)]
-        if flag == "nocache":
-            kept = [word for word in kept if not word.startswith("--cache=")]
         status, made, lines = self.outcome([*kept, f"--{flag}={VALUES[flag]}"], out)
         told = lines.count(f"--{flag}") + made[0].count(f"--{flag}")
         before = base[2].count(f"--{flag}") + base[1][0].count(f"--{flag}")
