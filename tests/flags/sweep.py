@@ -3,7 +3,7 @@
 
     tests/flags/sweep.py --program=build/release/bin/trilobe [--quick] [NAME...]
 
-Each case is a command on one kind of input: a table, scattered samples, an anisotropic measurement, several
+Each case is a command on one kind of input (compare, whose numbers are times, has the flags of plan): a table, scattered samples, an anisotropic measurement, several
 sources, a scene, a model. Each flag that `trilobe help COMMAND` lists is given another value than its default's,
 alone. Then one of these must hold:
 
@@ -48,7 +48,7 @@ SILENT = {
             "raw": "finishing may change nothing", "max_iterations": "it may converge before",
             "tolerance": "it may stop by --max_iterations first"},
     "fit many": {"held_out": "the reports have it"},
-    "plan": {"seed": "as of fit"}, "compare": {"seed": "as of fit", "json": "it is given"},
+    "plan": {"seed": "as of fit"},
     "study": {"seed": "as of fit", "smoothness": "as of fit", "match_reflectance": "as of fit",
               "raw": "as of fit", "max_iterations": "as of fit", "tolerance": "as of fit",
               "optimality_tolerance": "AWLS does not know it"},
@@ -65,7 +65,6 @@ FITS = {
     "fit scene": (["fit", "--scene=scene.json", *QUICK_FIT[:3], "--nocache"], "r"),
     "study": (["study", TABLE, "--solvers=awls", "--runs=1", *QUICK_FIT[1:]], "r"),
     "plan": (["plan", "scene.json", *QUICK_FIT[:3], "--nocache"], None),
-    "compare": (["compare", "scene.json", *QUICK_FIT[:3], "--nocache", "--json"], None),
 }
 OTHERS = {
     "score table": (["score", MODEL, TABLE], None),
@@ -143,7 +142,7 @@ class Sweep:
                 files = {"": comparable(place)}
             printed = re.sub(TIMES, "", done.stdout.replace(folder, ""))
             printed = re.sub(r" +", " ", printed)  # columns are as wide as their times
-            if words[0] in ("plan", "compare") or "--scene=scene.json" in words:  # times in the last columns
+            if words[0] == "plan" or "--scene=scene.json" in words:  # times in the last columns
                 printed = re.sub(r"\b[0-9.]+ *$", "", printed, flags=re.MULTILINE)
             return done.returncode, (printed, files), done.stderr.replace(folder, "")
 
