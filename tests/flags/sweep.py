@@ -3,9 +3,9 @@
 
     tests/flags/sweep.py --program=build/release/bin/trilobe [--quick] [NAME...]
 
-Each case is a command on one kind of input (compare, whose numbers are times, has the flags of plan): a table, scattered samples, an anisotropic measurement, several
-sources, a scene, a model. Each flag that `trilobe help COMMAND` lists is given another value than its default's,
-alone. Then one of these must hold:
+Each case is a command on one kind of input: a table, scattered samples, an anisotropic measurement, several
+sources, a scene, a model. (`compare`, whose table is of times, has the flags of `plan`.) Each flag that `trilobe help
+COMMAND` lists is given another value than its default's, alone. Then one of these must hold:
 
   - what the command prints or writes differs from that of the command without the flag;
   - the command names the flag in a line of its own: it changes nothing here, or is refused.
