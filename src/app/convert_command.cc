@@ -20,6 +20,7 @@
 #include "io/formats/csv_file.h"
 #include "io/formats/source_option.h"
 #include "io/formats/utia_file.h"
+#include "model/measurement/note_symptoms.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/export/convert.h"
@@ -182,7 +183,7 @@ void WriteAt(const std::string& source) {
     return;
   }
   std::vector<Rgb> values = EvaluateSamples(model, samples, options.num_threads);
-  if (std::ranges::all_of(samples.rho, [](const Rgb& rho) { return rho == Rgb{}; })) {
+  if (AllAreZero(samples)) {
     measurement.table = std::nullopt;
     measurement.samples = samples;
     measurement.samples.rho = std::move(values);

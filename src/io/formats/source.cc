@@ -17,6 +17,7 @@
 #include "io/formats/table_columns.h"
 #include "io/formats/text_table.h"
 #include "io/formats/utia_file.h"
+#include "model/measurement/note_symptoms.h"
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
@@ -366,8 +367,7 @@ Measurement Source::Read(const SourceOptions& options) const {
   Measurement measurement = synthetic() ? Synthesized(options) : Parsed(options);
   CorruptBy(options, &measurement);
   const BrdfSamples& samples = measurement.samples;
-  if (options.may_lack_values && !measurement.table &&
-      std::ranges::all_of(samples.rho, [](const Rgb& rho) { return rho == Rgb{}; })) {
+  if (options.may_lack_values && !measurement.table && AllAreZero(samples)) {
     DecideMeasured(options, &measurement);
     return measurement;
   }

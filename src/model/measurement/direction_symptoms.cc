@@ -213,7 +213,7 @@ bool MirrorSideIsDark(const BrdfSamples& samples, const std::vector<int>& number
   bool measured = false;
   for (const int j : numbers) {
     const SphericalAngles& at = samples.directions[j];
-    const double azimuth = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
+    const double azimuth = std::abs(AzimuthFromLight(at));
     if (std::abs(at.theta_o - at.theta_i) > DegreesToRadians(kNear)) continue;
     if (azimuth < kPi - DegreesToRadians(kAcross)) continue;
     measured = true;
@@ -243,8 +243,7 @@ HighlightSymptom HighlightOf(const BrdfSamples& samples) {
         largest > kStrong * Quantile(&values, 0.5) && MirrorSideIsDark(samples, numbers, largest);
     symptom.at_normal += at.theta_o < at.theta_i / 2 ? 1 : 0;
     symptom.at_light +=
-        at.theta_o > DegreesToRadians(10) &&
-                std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi)) < DegreesToRadians(30)
+        at.theta_o > DegreesToRadians(10) && std::abs(AzimuthFromLight(at)) < DegreesToRadians(30)
             ? 1
             : 0;
   }

@@ -42,4 +42,8 @@ void NoteSymptoms(int num_threads, Measurement* measurement) {
   std::ranges::copy(told, std::back_inserter(measurement->notes));
 }
 
+bool AllAreZero(const BrdfSamples& samples) {
+  return std::ranges::all_of(samples.rho, [](const Rgb& rho) { return rho == Rgb{}; });
+}
+
 }  // namespace trilobe

@@ -9,6 +9,9 @@ namespace trilobe {
 // to the notes of a measurement.
 void NoteSymptoms(int num_threads, Measurement* measurement);
 
+// Whether no sample has a value other than 0, as directions that are read alone.
+bool AllAreZero(const BrdfSamples& samples);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_MODEL_MEASUREMENT_NOTE_SYMPTOMS_H_

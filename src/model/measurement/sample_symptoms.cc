@@ -23,11 +23,6 @@ namespace {
 constexpr double kSameValue = 1e-6;  // relative
 constexpr int kMostSamples = 20000;  // that a symptom looks at
 
-// Azimuth from -pi to pi; 0 on the side of the light.
-double AzimuthFromLight(const SphericalAngles& at) {
-  return std::remainder(at.phi_o - at.phi_i, 2 * kPi);
-}
-
 // --- exchanged directions ---
 
 struct ExchangedSamples {

@@ -1,11 +1,14 @@
 #ifndef TRILOBE_MODEL_MEASUREMENT_SAMPLE_SYMPTOMS_H_
 #define TRILOBE_MODEL_MEASUREMENT_SAMPLE_SYMPTOMS_H_
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "model/measurement/symptoms.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
@@ -89,6 +92,11 @@ struct LargestValueSymptom {
   }
 };
 LargestValueSymptom LargestValueOf(const BrdfSamples& samples);
+
+// Azimuth from -pi to pi; 0 on the side of the light.
+inline double AzimuthFromLight(const SphericalAngles& at) {
+  return std::remainder(at.phi_o - at.phi_i, 2 * kPi);
+}
 
 // The numbers of the samples of about one theta_i, by steps of 5 degrees.
 std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples);
