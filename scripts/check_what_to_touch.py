@@ -151,7 +151,18 @@ def option(tree):
     tree.after("python/trilobe/_fitting/measurement.py", r"        scale=scale,\n", "        made_up=made_up,\n")
 
 
-ADDITIONS = {"a subcommand": subcommand, "an option of a measurement": option, "a solver": solver, "a format of measurements": measurement_format,
+def fit_option(tree):
+    """An option that leaves the comparison of a fit out: its member, its row, its meaning, its keyword in Python."""
+    tree.after("include/trilobe/fit/fit_options.h", r"bool raw = false;\n", "  bool made_up = false;  // compares nothing\n")
+    tree.after("src/fit/fit_option.cc", r"using Options = FitOptions;\n  return \{\n", """
+      Option<"made_up", &Options::made_up>({.help = "compare nothing", .changes_model = false}),
+""")
+    tree.after("src/fit/fit.cc", r"if \(options_\.compare(?=\))", " && !options_.made_up")
+    tree.after("python/trilobe/_fitting/fit.py", r"    raw: bool = False,\n", "    made_up: bool = False,\n")
+    tree.after("python/trilobe/_fitting/fit.py", r'        "raw": raw,\n', '        "made_up": made_up,\n')
+
+
+ADDITIONS = {"a subcommand": subcommand, "an option of a measurement": option, "an option of a fit": fit_option, "a solver": solver, "a format of measurements": measurement_format,
              "a form of the model": form, "a weighting": weighting}
 
 

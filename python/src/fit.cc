@@ -81,50 +81,6 @@ struct Outcome {
   bool interrupted = false;
 };
 
-Axis NodesOf(const nb::dict& options, const char* name) {
-  const auto [rings, of_root, phis] = OptionOf<std::tuple<int, bool, int>>(
-      options, name, "nodes: theta x phi, as '6x48', or '12rx48' for steps of the root of theta");
-  if (rings < 2 || rings > 90 || phis < 2 || phis > 720) {
-    throw Error(std::string(name) + " must be 2 to 90 theta by 2 to 720 phi");
-  }
-  Axis axis = Axis::EvenPolar(rings, of_root ? Axis::Steps::kOfRoot : Axis::Steps::kOfTheta, phis);
-  CheckAxis(axis, name[0] == 'd' ? "D" : "G");
-  return axis;
-}
-
-template <typename T>
-std::optional<T> MaybeOf(const nb::dict& options, const char* name, const char* must_be) {
-  if (options.contains(name) && options[name].is_none()) return std::nullopt;
-  return OptionOf<T>(options, name, must_be);
-}
-
-}  // namespace
-
-FormOptions FormOf(const nb::dict& options) {
-  const NamedForm& named = FindForm(OptionOf<std::string>(options, "model", "a name"));
-  FormOptions form{.kind = named.kind};
-  form.lobes = MaybeOf<int>(options, "lobes", "an integer");
-  std::vector<Stretch> stretches;
-  for (const auto& [along, across] : OptionOf<std::vector<std::pair<double, double>>>(
-           options, "stretch", "(along, across), once or for each lobe")) {
-    stretches.push_back({.along = along, .across = across});
-  }
-  if (!stretches.empty()) form.stretches = Stretches(stretches);
-  const size_t lobes = named.lobes.value_or(form.lobes.value_or(3));
-  if (stretches.size() > 1 && stretches.size() != lobes) {
-    throw Error("stretch has " + std::to_string(stretches.size()) + " pairs for " +
-                std::to_string(lobes) + " lobes; give one, or one a lobe");
-  }
-  if (!options["d_nodes"].is_none()) form.d_nodes = NodesOf(options, "d_nodes");
-  if (!options["g_nodes"].is_none()) form.g_nodes = NodesOf(options, "g_nodes");
-  form.f_bins = MaybeOf<int>(options, "f_bins", "an integer");
-  form.nodes_by_held_out = OptionOf<bool>(options, "nodes_by_held_out", "True or False");
-  CheckForm(form);
-  return form;
-}
-
-namespace {
-
 OptionValue ValueOf(const nb::dict& options, const std::string& name, const OptionValue& like) {
   return std::visit(
       [&](const auto& of_type) -> OptionValue {
@@ -189,37 +145,14 @@ SolverOptions MakeOptions(const std::vector<std::pair<const SolverOption*, Optio
 }
 
 FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
-  FitOptions fit;
-  fit.form = FormOf(options);
-  fit.init = OptionOf<std::string>(options, "init", "a name");
-  FindInitialModel(fit.init);  // its error
-  const SolverEntry& solver = FindSolver(OptionOf<std::string>(options, "solver", "a name"));
-  fit.solver = solver.name;
+  FitOptions fit = FitOptionsOf(options);
   fit.seed = OptionOf<uint64_t>(options, "seed", "an integer from 0");
+  const SolverEntry& solver = FindSolver(fit.solver);
   const auto values = SolverValues(solver, solver_options);
   fit.solver_options = [values, &solver, seed = fit.seed](const ModelSpec& spec) {
     return MakeOptions(values, solver, seed, spec);
   };
   CheckSolverOptions(fit.solver_options(ModelSpec()));
-  fit.weighting = FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
-  fit.prior = MaybeOf<double>(options, "prior", "a number");
-  if (fit.prior && !(*fit.prior >= 0 && *fit.prior <= 1e6)) {
-    throw Error("prior must be from 0 to 1e6");
-  }
-  fit.robust = OptionOf<double>(options, "robust", "a number");
-  if (!(fit.robust >= 0 && fit.robust <= 1e6)) throw Error("robust must be from 0 to 1e6");
-  fit.smoothness = OptionOf<double>(options, "smoothness", "a number");
-  if (!(fit.smoothness >= 0 && fit.smoothness <= 1)) throw Error("smoothness must be from 0 to 1");
-  fit.max_parameters = MaybeOf<int>(options, "max_parameters", "an integer");
-  if (fit.max_parameters.value_or(1) < 1) throw Error("max_parameters must be at least 1");
-  fit.choose_form = OptionOf<std::string>(options, "model", "a name") == "auto";
-  fit.match_reflectance = OptionOf<bool>(options, "match_reflectance", "True or False");
-  fit.raw = OptionOf<bool>(options, "raw", "True or False");
-  if (const auto start = MaybeOf<nb::bytes>(options, "start", "the text of a model file")) {
-    fit.start_model = ParseModel({start->c_str(), start->size()}, "start").model;
-    fit.init = "start";
-  }
-  fit.num_threads = ThreadsOf(options);
   return fit;
 }
 

@@ -9,6 +9,8 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -16,9 +18,11 @@
 #include <vector>
 
 #include "core/files/own_mark.h"
+#include "fit/fit_option.h"
 #include "io/formats/source_option.h"
 #include "trilobe/fit/form.h"
 #include "trilobe/io/formats/source.h"
+#include "trilobe/model/read_model.h"
 
 namespace nb = nanobind;
 
@@ -47,36 +51,52 @@ BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights) {
 
 namespace {
 
-[[noreturn]] void FailOption(const SourceOption& option) {
-  const bool is_truth = std::holds_alternative<bool>(option.default_value);
-  const bool is_number = std::holds_alternative<double>(option.default_value);
-  throw Error(option.name + " must be " +
-              (is_truth    ? "True or False"
-               : is_number ? "a number"
-                           : "a text, or a number"));
+// How an option is to be given, by the default value of its flag.
+std::string TypeOf(const OptionValue& value) {
+  if (std::holds_alternative<bool>(value)) return "True or False";
+  if (std::holds_alternative<int>(value)) return "an integer";
+  return std::holds_alternative<double>(value) ? "a number" : "a text";
 }
 
-// The text that the flag of an option would have.
-std::string FlagTextOf(const SourceOption& option, const nb::handle& value) {
-  bool truth = false;
-  if (std::holds_alternative<bool>(option.default_value)) {
-    if (!nb::try_cast<bool>(value, truth)) FailOption(option);
-    return truth ? "true" : "false";
-  }
-  if (std::holds_alternative<std::string>(option.default_value) && nb::isinstance<nb::str>(value)) {
-    return nb::cast<std::string>(value);
-  }
-  // Numbers of NumPy are taken, too.
-  double number = 0;
+// The text of a number, of NumPy, too; nothing for another value.
+std::optional<std::string> NumberText(const nb::handle& value) {
   if (int64_t integer = 0; nb::try_cast<int64_t>(value, integer)) return std::to_string(integer);
-  if (!nb::try_cast<double>(value, number)) FailOption(option);
+  double number = 0;
+  if (!nb::try_cast<double>(value, number)) return std::nullopt;
   return nb::cast<std::string>(nb::repr(nb::float_(number)));
 }
 
-// The names of the options of a measurement, and the defaults of their flags.
-nb::dict SourceOptionDefaults() {
+// The text that the flag of an option would have.
+std::string FlagTextOf(const std::string& name, const OptionValue& like, const nb::handle& value) {
+  std::optional<std::string> text;
+  if (std::holds_alternative<bool>(like)) {
+    if (bool truth = false; nb::try_cast<bool>(value, truth)) text = truth ? "true" : "false";
+  } else if (std::holds_alternative<int>(like)) {
+    if (int integer = 0; nb::try_cast<int>(value, integer)) text = std::to_string(integer);
+  } else if (std::holds_alternative<std::string>(like) && nb::isinstance<nb::str>(value)) {
+    text = nb::cast<std::string>(value);
+  } else {
+    text = NumberText(value);
+  }
+  if (!text) throw Error(name + " must be " + TypeOf(like));
+  return *text;
+}
+
+// Sets those options of a table of rows that are there.
+template <typename Row, typename Options>
+void SetOptions(const std::vector<Row>& rows, const nb::dict& given, Options* options) {
+  for (const Row& option : rows) {
+    const char* const name = option.name.c_str();
+    if (!given.contains(name)) continue;
+    option.set(FlagTextOf(option.name, option.default_value, given[name]), options);
+  }
+}
+
+// The names of the options, and the defaults of their flags.
+template <typename Row>
+nb::dict DefaultsOf(const std::vector<Row>& rows) {
   nb::dict defaults;
-  for (const SourceOption& option : AllSourceOptions()) {
+  for (const Row& option : rows) {
     std::visit([&](const auto& value) { defaults[option.name.c_str()] = nb::cast(value); },
                option.default_value);
   }
@@ -87,12 +107,22 @@ nb::dict SourceOptionDefaults() {
 
 SourceOptions SourceOptionsOf(const nb::dict& options) {
   SourceOptions source{.num_threads = ThreadsOf(options)};
-  for (const SourceOption& option : AllSourceOptions()) {
-    if (!options.contains(option.name.c_str())) continue;
-    option.set(FlagTextOf(option, options[option.name.c_str()]), &source);
-  }
+  SetOptions(AllSourceOptions(), options, &source);
   CheckSourceOptions(source);
   return source;
+}
+
+FitOptions FitOptionsOf(const nb::dict& options) {
+  FitOptions fit;
+  fit.num_threads = ThreadsOf(options);
+  SetOptions(AllFitOptions(), options, &fit);
+  if (options.contains("start")) {
+    const auto text = OptionOf<nb::bytes>(options, "start", "the text of a model file");
+    fit.start_model = ParseModel({text.c_str(), text.size()}, "start").model;
+    fit.init = "start";
+  }
+  CheckFitOptions(fit);
+  return fit;
 }
 
 NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
@@ -110,8 +140,12 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
         }
       },
       nullptr);
-  m.def("source_options", SourceOptionDefaults,
-        nb::sig("def source_options() -> dict[str, object]"));
+  m.def(
+      "source_options", [] { return DefaultsOf(AllSourceOptions()); },
+      nb::sig("def source_options() -> dict[str, object]"));
+  m.def(
+      "fit_options", [] { return DefaultsOf(AllFitOptions()); },
+      nb::sig("def fit_options() -> dict[str, object]"));
   m.def(
       "form_names",
       [] {

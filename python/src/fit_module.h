@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "trilobe/core/base/error.h"
-#include "trilobe/fit/form.h"
+#include "trilobe/fit/fit_options.h"
 #include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/measurement.h"
@@ -40,8 +40,8 @@ int ThreadsOf(const nanobind::dict& options);
 // How a source is read.
 SourceOptions SourceOptionsOf(const nanobind::dict& options);
 
-// The form of a model, by the names that trilobe.fit has.
-FormOptions FormOf(const nanobind::dict& options);
+// How a model is fitted, by the names that trilobe.fit has, without the solver's options and seed.
+FitOptions FitOptionsOf(const nanobind::dict& options);
 
 // How often each valid sample counts. [samples]
 using Weights =

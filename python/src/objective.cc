@@ -98,25 +98,21 @@ class FitObjective {
  private:
   static Objective Make(const Measured& measured, const nb::dict& options,
                         const std::optional<Weights>& weights) {
-    const FormOptions form = FormOf(options);
+    const FitOptions fit = FitOptionsOf(options);
     std::optional<ModelSpec> like;
     if (options.contains("like")) {
       const auto text = OptionOf<nb::bytes>(options, "like", "the text of a model file");
       like = ParseModel({text.c_str(), text.size()}, "the model").model.spec();
     }
-    const Weighting& weighting =
-        FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
-    const int threads = ThreadsOf(options);
     std::shared_ptr<const Measurement> data = measured.data;
     const nb::gil_scoped_release released;
-    if (const FitOptions fit = {.form = form, .weighting = weighting, .num_threads = threads};
-        !like && ChoosesAzimuths(*data, fit)) {
+    if (!like && ChoosesAzimuths(*data, fit)) {
       data = std::make_shared<const Measurement>(WithAzimuthsChosen(*data, fit));
     }
     BrdfSamples samples = SamplesOf(*data);
     if (weights) samples = Weighted(std::move(samples), ByRow(*weights));
-    const ModelSpec spec = like ? *like : SpecFor(*data, form, samples.size());
-    return Objective(std::move(samples), spec, weighting, threads);
+    const ModelSpec spec = like ? *like : SpecFor(*data, fit.form, samples.size());
+    return Objective(std::move(samples), spec, fit.weighting, fit.num_threads);
   }
 
   std::shared_ptr<const Measurement> data_;

@@ -35,11 +35,6 @@ DEFINE_double(error, 0,
               "error against the model or the measurement; finer tables are taken until it is met. "
               "0: 0.005, for an anisotropic model 0.02, or the least that files reach, and for a "
               "measurement the error of files of usual size");
-DEFINE_bool(spectral, false,
-            "keep spectra: `fit` also writes DIR/spectral.json, a model of all wavelengths that "
-            "were measured; a .bsdf file has spectra in place of RGB, for spectral renderers "
-            "(Mitsuba's spectral variants, pbrt-v4; the others cannot read it); a .csv file has a "
-            "column per wavelength");
 DEFINE_string(at, "",
               "for a model and a .csv file: a measurement, at whose directions the values of both "
               "are written, side by side");
@@ -64,7 +59,7 @@ void CheckOut(const std::string& source) {
 ConvertOptions OptionsFromFlags(const std::string& source) {
   if (!(FLAGS_error >= 0 && FLAGS_error <= 1)) throw Error("--error must be from 0 to 1");
   ConvertOptions options{.error = FLAGS_error,
-                         .spectral = FLAGS_spectral,
+                         .spectral = IsOn("spectral"),
                          .program = ProgramName(),
                          .appearance = AppearanceOptionsFromFlags(),
                          .num_threads = ThreadsFromFlags()};
@@ -169,12 +164,12 @@ void WriteAt(const std::string& source) {
   SourceOptions options = SourceOptionsFromFlags();
   options.may_lack_values = true;
   const ModelFile file = ModelOfSource(source);
-  if (FLAGS_spectral && !file.spectral) throw Error(NotSpectral(source));
+  if (IsOn("spectral") && !file.spectral) throw Error(NotSpectral(source));
   const FactorModel& model = file.model;
   Measurement measurement = MeasurementOfSource(FLAGS_at, options);
   PrintNotes(measurement);
   const BrdfSamples samples = SamplesOf(measurement);
-  if (FLAGS_spectral) {
+  if (IsOn("spectral")) {
     WriteSpectra(samples, file.spectral->wavelengths(), [&](int j, std::span<double> rho) {
       const DirectionPair pair = samples.directions.empty() ? ToDirections(samples.Angles(j))
                                                             : ToDirections(samples.directions[j]);
@@ -221,7 +216,7 @@ int RunConvert(std::span<const std::string> arguments) {
   Inputs({source}).CheckOutput(out, CheckMayReplaceMeasurement);
   SourceOptions options = SourceOptionsFromFlags();
   options.as_they_are = true;
-  if (FLAGS_spectral) {
+  if (IsOn("spectral")) {
     WriteMeasuredSpectra(source, options);
     return 0;
   }

@@ -17,15 +17,11 @@
 #include "io/pictures/image_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/objective/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
 DEFINE_int64(seed, 1,
              "seed of all random numbers: of --init=random, of random starts of a solver, and of "
              "--data_seed unless that is given");
-DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
-DEFINE_string(weighting, trilobe::Weightings().front().name,
-              "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
 DEFINE_string(out, "", "output: a file or, for fit, study, info and plot, a folder");
 DEFINE_bool(force, false,
             "overwrite or remove files in the way of --out even if Trilobe has not written them");
@@ -73,6 +69,12 @@ void DefineFlag(const std::string& name, const std::string& help,
 
 const OptionValue& FlagValue(const std::string& name) { return Storage().at(name).value; }
 
+const std::string& TextFlag(const std::string& name) {
+  return std::get<std::string>(FlagValue(name));
+}
+
+bool IsOn(const std::string& name) { return std::get<bool>(FlagValue(name)); }
+
 void DefineSourceFlags() {
   for (const SourceOption& option : AllSourceOptions()) {
     const std::string range = option.range.must_be;
@@ -83,6 +85,10 @@ void DefineSourceFlags() {
 
 bool IsDefault(const std::string& flag) {
   return gflags::GetCommandLineFlagInfoOrDie(flag.c_str()).is_default;
+}
+
+std::string FlagText(const std::string& flag) {
+  return gflags::GetCommandLineFlagInfoOrDie(flag.c_str()).current_value;
 }
 
 std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags) {

@@ -12,9 +12,7 @@
 
 // Flags shared by several commands.
 DECLARE_int32(threads);
-DECLARE_int32(lobes);
 DECLARE_int64(seed);
-DECLARE_string(weighting);
 DECLARE_string(out);
 DECLARE_bool(force);
 
@@ -34,11 +32,16 @@ struct SourceOptions;
 void DefineFlag(const std::string& name, const std::string& help, const OptionValue& default_value);
 // The value of a flag that DefineFlag has defined. Throws std::out_of_range for another.
 const OptionValue& FlagValue(const std::string& name);
+// The same for a flag whose values are texts, and for one that is true or false.
+const std::string& TextFlag(const std::string& name);
+bool IsOn(const std::string& name);
 // Defines the flags of AllSourceOptions().
 void DefineSourceFlags();
 
-// Whether the flag has its default value.
+// Whether the flag was not given.
 bool IsDefault(const std::string& flag);
+// The value of a flag of any type, as one would write it.
+std::string FlagText(const std::string& flag);
 
 // The parts of the value of a flag, without blanks around them.
 std::vector<std::string> Split(const std::string& text, char separator);

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/fit_flags.h"
 #include "app/flags.h"
-#include "app/model_flags.h"
 #include "app/solver_flags.h"
 #include "core/base/names.h"
 #include "trilobe/core/base/error.h"
@@ -289,7 +289,7 @@ void OccupyStandardStreams() {
 // `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both.
 int Main(int argc, char** argv) {
   DefineSourceFlags();
-  DefineModelFlag();
+  DefineFitFlags();
   DefineSolverFlags();
   CommandLine line = ReadCommandLine(argc, argv);
   TakeOtherNames(&line);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/fit_flags.h"
 #include "app/flags.h"
 #include "app/interrupt.h"
 #include "app/program.h"
@@ -15,8 +16,6 @@
 #include "core/system/process.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/objective/weighting.h"
-#include "trilobe/solvers/starts/initial_model.h"
 
 DEFINE_string(cache, "",
               "folder where fits are kept for the next time; $XDG_CACHE_HOME/trilobe if "
@@ -43,8 +42,10 @@ FitCache CacheFromFlags() {
 }  // namespace
 
 std::vector<std::string> SceneFlags() {
-  return WithSourceFlags({"solver", "weighting", "lobes", "max_iterations", "max_seconds",
-                          "tolerance", "optimality_tolerance", "cache", "nocache"});
+  std::vector<std::string> flags = WithSourceFlags(SceneFitOptionFlags());
+  flags.insert(flags.end(), {"max_iterations", "max_seconds", "tolerance", "optimality_tolerance",
+                             "cache", "nocache"});
+  return flags;
 }
 
 std::vector<std::string> SceneModelFlags() {
@@ -55,16 +56,11 @@ std::vector<std::string> SceneModelFlags() {
 }
 
 SceneFitSettings SceneSettingsFromFlags() {
-  const SolverEntry& solver = SolverFromFlags();
-  const ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes);
-  CheckSpec(spec);
-  SceneFitSettings settings{.solver = solver.name,
-                            .options = SolverOptionsFromFlags(solver, spec),
-                            .init = InitialModels().front().name,
-                            .weighting = FindWeighting(FLAGS_weighting).name,
-                            .lobes = FLAGS_lobes,
-                            .seed = static_cast<uint64_t>(FLAGS_seed),
+  FitOptions fit = FitOptionsFromFlags();
+  const SolverOptions solver_options = fit.solver_options(ModelSpec());
+  SceneFitSettings settings{.fit = std::move(fit),
                             .source = SourceOptionsFromFlags(/*has_starts=*/true),
+                            .options = solver_options,
                             .program = ProgramName(),
                             .build = ProgramBuild(),
                             .appearance = AppearanceOptionsFromFlags(),

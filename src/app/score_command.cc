@@ -78,7 +78,7 @@ void PrintDetails(const Scored& scored, const Objective& objective) {
 }
 
 int RunScore(std::span<const std::string> arguments) {
-  const Weighting weighting = FindWeighting(FLAGS_weighting);
+  const Weighting weighting = FindWeighting(TextFlag("weighting"));
   const AppearanceOptions appearance_options = AppearanceOptionsFromFlags();
   const int threads = ThreadsFromFlags();
   CheckPictureOut();

@@ -10,8 +10,6 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/solvers/starts/solvers.h"
 
-DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above");
-
 namespace trilobe {
 namespace {
 
@@ -58,7 +56,7 @@ void DefineSolverFlags() {
   }
 }
 
-const SolverEntry& SolverFromFlags() { return FindSolver(FLAGS_solver); }
+const SolverEntry& SolverFromFlags() { return FindSolver(TextFlag("solver")); }
 
 std::vector<std::string> CommonSolverFlags() {
   std::vector<std::string> flags;

@@ -10,11 +10,11 @@
 #include <set>
 #include <utility>
 
+#include "app/fit_flags.h"
 #include "app/fit_jobs.h"
 #include "app/fit_settings.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/model_flags.h"
 #include "app/solver_flags.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/solvers/starts/solvers.h"
@@ -24,7 +24,6 @@ DEFINE_int32(
     runs, 5,
     "runs of each solver on each problem: the first from the start --init, the others from "
     "random ones, --init=random with the seeds that follow --seed; --starts is another name of it");
-DECLARE_bool(held_out);
 DEFINE_string(set, "",
               "FLAG=a,b,c: run with each of these values of a flag of `fit`; several flags are "
               "separated by ; and values with commas in them by |. A flag that only some solvers "

@@ -7,10 +7,11 @@
 
 #include "core/system/process.h"
 #include "fit/azimuths.h"
-#include "fit/check_options.h"
 #include "fit/choose_form.h"
+#include "fit/complete_options.h"
 #include "fit/finish/albedo_ripple.h"
 #include "fit/finish/limit_light.h"
+#include "fit/fit_option.h"
 #include "fit/guess_error.h"
 #include "fit/held_out.h"
 #include "fit/held_out_fit.h"
@@ -87,7 +88,7 @@ class Fitting {
  public:
   Fitting(const Measurement& measurement, const FitOptions& options)
       : measurement_(measurement),
-        options_(CheckOptions(options)),
+        options_(CompleteOptions(options)),
         table_(measurement.table && !options.select ? &*measurement.table : nullptr) {}
 
   FitResult Run() {
@@ -424,9 +425,10 @@ class Fitting {
 }  // namespace
 
 FitResult Fit(const Measurement& measurement, const FitOptions& options) {
+  CheckFitOptions(options);
   if (!ChoosesAzimuths(measurement, options)) return Fitting(measurement, options).Run();
   AzimuthChoice choice =
-      ChooseAzimuths(measurement, CheckOptions(options),
+      ChooseAzimuths(measurement, CompleteOptions(options),
                      [](const auto& data, const auto& by) { return ModelOf(Fit(data, by)); });
   FitResult fit = choice.matter ? Fitting(measurement, options).Run()
                                 : Fitting(WithoutAzimuths(measurement), options).Run();

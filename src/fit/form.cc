@@ -16,7 +16,7 @@ constexpr int kLobes = 3;
 
 ModelSpec AnisotropicSpec(const FormOptions& options, const HemisphereGrid& data,
                           double max_theta) {
-  const int lobes = options.lobes.value_or(kLobes);
+  const int lobes = LobesOf(options);
   ModelSpec spec = options.kind == Kind::kAnisotropic
                        ? ModelSpec::Anisotropic(lobes)
                        : ModelSpec::AnisotropicFor(lobes, data.phis, max_theta);
@@ -40,11 +40,11 @@ void CheckNothingAnisotropic(const FormOptions& options) {
 ModelSpec IsotropicSpec(const FormOptions& options, const MerlGrid& grid, int g_nodes = 0) {
   CheckNothingAnisotropic(options);
   const bool independent = options.kind == Kind::kIndependent;
-  if (independent && options.lobes.value_or(1) != 1) {
+  if (independent && LobesOf(options) != 1) {
     throw Error("--model=independent has one lobe; leave out --lobes");
   }
   ModelSpec spec = independent ? ModelSpec::IndependentG(grid)
-                               : ModelSpec::SharedFactors(options.lobes.value_or(kLobes), grid);
+                               : ModelSpec::SharedFactors(LobesOf(options), grid);
   if (g_nodes > 0) spec.g_axis.size = g_nodes;
   spec.stretches = options.stretches;
   CheckSpec(spec);
@@ -67,6 +67,10 @@ const std::vector<NamedForm>& NamedForms() {
 }
 
 const NamedForm& FindForm(std::string_view name) { return FindNamed("model", name, NamedForms()); }
+
+int LobesOf(const FormOptions& options) {
+  return options.lobes.value_or(options.kind == Kind::kIndependent ? 1 : kLobes);
+}
 
 void CheckForm(const FormOptions& options) {
   if (options.kind == Kind::kAnisotropic || options.kind == Kind::kShared) {

@@ -147,8 +147,8 @@ TEST(ProgramTest, SaysWhichFlagWasMeant) {
 
 TEST(ProgramTest, TakesFormerNamesOfFlags) {
   ExpectError(RunProgram({"fit", "synth:plastic", "--max_numbers=0"}),
-              "--max_parameters must be at least 1");
-  ExpectError(RunProgram({"fit", "synth:linen@4x6", "--guide=-1"}), "--prior must be");
+              "--max_parameters is 0; it must be at least 1");
+  ExpectError(RunProgram({"fit", "synth:linen@4x6", "--guide=-1"}), "--prior is -1; it must be");
   ExpectError(RunProgram({"fit", "--scene=x.json", "--out=x", "--course"}),
               "is for the fit of one SOURCE");
 }

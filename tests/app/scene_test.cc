@@ -390,9 +390,9 @@ TEST(Scene, ReadsMeasurementsAsItIsTold) {
     return text;
   }();
   const std::string flags[] = {"--columns=f,phi_i,theta_i,phi_o,theta_o", "--cosine=o:1",
-                               "--scale=0.01"};
+                               "--scale=0.01", "--weighting=log", "--prior=0.5"};
   const std::string options = R"(, "options": {"columns": "f,phi_i,theta_i,phi_o,theta_o",
-                                               "cosine": "o:1", "scale": 0.01})";
+      "cosine": "o:1", "scale": 0.01, "weighting": "log", "prior": 0.5})";
   const auto scene_with = [&](const std::string& name, const std::string& own) {
     const std::string path = folder / (name + ".json");
     std::ofstream(path) << R"({"format": "trilobe-scene", "version": 1,
@@ -416,6 +416,8 @@ TEST(Scene, ReadsMeasurementsAsItIsTold) {
                                  model.parameters()));
   EXPECT_THAT(RunProgram({"plan", scene_with("bad", R"(, "options": {"scale": "much"})")}).err,
               HasSubstr("/materials/0/options/scale: --scale=much"));
+  EXPECT_THAT(RunProgram({"plan", scene_with("bad", R"(, "options": {"smoothness": 2})")}).err,
+              HasSubstr("/materials/0/options/smoothness: --smoothness is 2; it must be"));
   EXPECT_THAT(RunProgram({"plan", scene_with("bad", R"(, "options": {"noize": 1})")}).err,
               HasSubstr("did you mean 'noise'"));
 }
@@ -458,8 +460,8 @@ TEST(Scene, BadUseIsAnError) {
       {{"fit", "synth:felt@30x30x60", "--nocache"}, "--nocache goes with --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--plots"}, "not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--convergence"}, "not for --scene"},
-      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--robust=0.1"},
-       "--robust is for the fit of one SOURCE, not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--raw"},
+       "--raw is for the fit of one SOURCE, not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--max_parameters=100"},
        "--max_parameters is for the fit of one SOURCE, not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--model=auto"},

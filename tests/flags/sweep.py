@@ -48,7 +48,7 @@ SILENT = {
             "raw": "finishing may change nothing", "max_iterations": "it may converge before",
             "tolerance": "it may stop by --max_iterations first"},
     "fit many": {"held_out": "the reports have it"},
-    "plan": {"seed": "as of fit"},
+    "plan": {"seed": "as of fit", "smoothness": "as of fit", "match_reflectance": "as of fit"},
     "study": {"seed": "as of fit", "smoothness": "as of fit", "match_reflectance": "as of fit",
               "raw": "as of fit", "max_iterations": "as of fit", "tolerance": "as of fit",
               "optimality_tolerance": "AWLS does not know it"},

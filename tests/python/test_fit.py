@@ -128,6 +128,20 @@ def test_read_has_the_options_of_the_program():
                 trilobe.read(SMALL, **{"seed" if name == "data_seed" else name: object()})
 
 
+def test_fit_has_the_options_of_the_program():
+    flags = trilobe._fitting.extension.fits().fit_options()
+    of_python = {"measurement", "start", "weights", "seed", "threads", "progress", "callback", "stop", "solver_options"}
+    keywords = inspect.signature(trilobe.fit).parameters
+    # Spectra and blocks that are held out are the program's alone.
+    assert set(keywords) - of_python == set(flags) - {"spectral", "held_out"}
+    for name in set(keywords) - of_python:
+        default = keywords[name].default
+        assert default is None or str(default) == str(flags[name]) or float(default) == flags[name]
+        assert f"{name}: " in trilobe.fit.__doc__
+        with pytest.raises(trilobe.Error, match=name):
+            trilobe.fit(SMALL, **{name: object()})
+
+
 def test_models_have_the_names_of_the_program():
     assert list(typing.get_args(trilobe._fitting.options.Form)) == trilobe._fitting.extension.fits().form_names()
 
@@ -234,17 +248,20 @@ BAD = [
     (lambda: trilobe.read(SMALL, seed=-1), "seed=-1: give an integer from 0"),
     (lambda: trilobe.read(SMALL, threads=-1), "threads is negative"),
     (lambda: trilobe.fit(SMALL, model="round"), "unknown model 'round'"),
-    (lambda: trilobe.fit(SMALL, model=None), "model must be a name"),
+    (lambda: trilobe.fit(SMALL, model=None), "model must be a text"),
     (lambda: trilobe.fit(SMALL, solver="best"), "best"),
+    (lambda: trilobe.fit(SMALL, max_parameters=500), "max_parameters goes with --model=auto"),
+    (lambda: trilobe.fit(SMALL, raw=True, robust=0.1), "leave out --robust"),
+    (lambda: trilobe.fit(SMALL, model="auto", smoothness=0.1), "for a form that is given"),
     (lambda: trilobe.fit(SMALL, solver="awls", memory=3), "solver awls does not take memory; it takes"),
     (lambda: trilobe.fit(SMALL, max_iterations="9"), "max_iterations must be an integer"),
     (lambda: trilobe.fit(SMALL, max_iterations=-9), "max_iterations"),
     (lambda: trilobe.fit(SMALL, lobes=99), "lobes"),
     (lambda: trilobe.fit(SMALL, stretch=(1, 2, 3)), "stretch must be"),
-    (lambda: trilobe.fit(SMALL, stretch=[(0, 1), (1, 0)]), "stretch has 2 pairs for 3 lobes"),
-    (lambda: trilobe.fit(SMALL, d_nodes="many"), "d_nodes='many' are no nodes"),
-    (lambda: trilobe.fit(SMALL, d_nodes=np.zeros((3, 3))), "d_nodes=array.*are no nodes"),
-    (lambda: trilobe.fit(SMALL, nodes=np.zeros((3, 3))), "unknown nodes array"),
+    (lambda: trilobe.fit(SMALL, stretch=[(0, 1), (1, 0)]), "has 2 pairs for 3 lobes"),
+    (lambda: trilobe.fit(SMALL, d_nodes="many"), "--d_nodes=many: give nodes"),
+    (lambda: trilobe.fit(SMALL, d_nodes=np.zeros((3, 3))), "d_nodes must be a text"),
+    (lambda: trilobe.fit(SMALL, nodes=np.zeros((3, 3))), "nodes must be a text"),
     (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]], [1.0], anisotropic=np.ones(2)), "must be True, False"),
     (lambda: isotropic().unobserved(np.ones((2, 2))), "there is no factor array"),
     (lambda: trilobe.fit(SMALL, weighting="light"), "light"),

@@ -100,12 +100,12 @@ TEST(RacesInABsdf, OverItsTables) {
 TEST(RacesInScenes, OfMaterialsSideBySide) {
   const TestDirectory directory;
   SceneFitSettings settings;
-  settings.solver = "awls";
+  settings.fit.solver = "awls";
   settings.options.max_iterations = 2;
   settings.options.diagnose = false;
-  settings.init = "analytic";
-  settings.weighting = "appearance";
-  settings.lobes = 1;
+  settings.fit.init = "analytic";
+  settings.fit.weighting = FindWeighting("appearance");
+  settings.fit.form.lobes = 1;
   settings.program = "test";
   settings.cache = FitCache(directory.path());
   Scene scene{.path = "scene.json", .materials = {}};

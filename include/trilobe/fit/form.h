@@ -45,6 +45,9 @@ const std::vector<NamedForm>& NamedForms();
 // Throws Error, which lists the known names, for others.
 const NamedForm& FindForm(std::string_view name);
 
+// The lobes of the form, given or by default.
+int LobesOf(const FormOptions& options);
+
 // Throws Error for options that contradict each other.
 void CheckForm(const FormOptions& options);
 

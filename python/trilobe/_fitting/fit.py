@@ -13,7 +13,16 @@ from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
 from trilobe._fitting.objective import Problem
-from trilobe._fitting.options import Form, InitName, SolverName, SolverOptions, Weights, form_options, weights_of
+from trilobe._fitting.options import (
+    Form,
+    InitName,
+    SolverName,
+    SolverOptions,
+    Weights,
+    stretch_text,
+    weights_of,
+    without_none,
+)
 from trilobe._fitting.result import Result
 from trilobe._fitting.running import Callback, Stop, run
 from trilobe._model.brdf import Brdf, model_of
@@ -94,23 +103,31 @@ def fit(
         Error: with the program's line.
         KeyboardInterrupt: when it is interrupted before there is a model.
     """
-    form = form_options(model, lobes, stretch, d_nodes, g_nodes, f_bins, nodes)
-    if start is not None and (lobes is not None or form["stretch"] or not isinstance(model, str) or model != "shared"):
+    form_is_given = lobes is not None or stretch is not None or not isinstance(model, str) or model != "shared"
+    if start is not None and form_is_given:
         raise Error("start brings its own lobes and tables; leave out model, lobes and stretch")
-    options = form | {
+    options = {
+        "model": model,
+        "nodes": nodes,
         "solver": solver,
         "init": init,
-        "start": None if start is None else model_of(start).to_json().encode(),
         "weighting": weighting,
-        "prior": prior,
         "robust": robust,
         "smoothness": smoothness,
         "match_reflectance": match_reflectance,
         "raw": raw,
-        "max_parameters": max_parameters,
         "seed": seed,
         "threads": threads,
-    }
+    } | without_none(
+        lobes=lobes,
+        stretch=stretch_text(stretch),
+        d_nodes=d_nodes,
+        g_nodes=g_nodes,
+        f_bins=f_bins,
+        start=None if start is None else model_of(start).to_json().encode(),
+        prior=prior,
+        max_parameters=max_parameters,
+    )
     data = measurement_of(measurement)
     if callback is not None and not callable(callback):
         raise Error("callback must be a function of a record and a model")

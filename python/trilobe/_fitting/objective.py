@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
-from trilobe._fitting.options import Form, Weights, form_options, weights_of
+from trilobe._fitting.options import Form, Weights, stretch_text, weights_of, without_none
 from trilobe._model.arrays import as_array
 from trilobe._model.brdf import Brdf, model_of
 
@@ -70,8 +70,9 @@ class Objective:
         """
         if isinstance(model, str) and model == "auto":
             raise Error("model='auto' chooses among forms; give the one that E is of")
-        options = form_options(model, lobes, stretch, d_nodes, g_nodes, f_bins, "given")
-        options |= {"weighting": weighting, "threads": threads}
+        options = {"model": model, "weighting": weighting, "threads": threads} | without_none(
+            lobes=lobes, stretch=stretch_text(stretch), d_nodes=d_nodes, g_nodes=g_nodes, f_bins=f_bins
+        )
         if like is not None:
             options["like"] = model_of(like).to_json().encode()
         data = measurement_of(measurement)

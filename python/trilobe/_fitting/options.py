@@ -5,7 +5,6 @@ The tests compare the names with what C++ knows.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any, Literal, TypedDict, Union
 
@@ -62,40 +61,16 @@ def weights_of(weights: Weights | None, data: Measurement) -> NDArray[np.float64
     return array
 
 
-def form_options(
-    model: str,
-    lobes: int | None,
-    stretch: ArrayLike | None,
-    d_nodes: str | None,
-    g_nodes: str | None,
-    f_bins: int | None,
-    nodes: str,
-) -> dict[str, Any]:
-    """The form of a model, as C++ takes it. Raises Error."""
-    pairs: list[list[float]] = []
-    if stretch is not None:
-        array = as_array(stretch, "stretch").astype(np.float64)
-        if array.ndim not in (1, 2) or array.shape[-1] != 2:
-            raise Error("stretch must be (along, across), once or for each lobe")
-        pairs = array.reshape(-1, 2).tolist()
-    if not isinstance(nodes, str) or nodes not in ("given", "held_out"):
-        raise Error(f"unknown nodes {' '.join(repr(nodes).split())[:60]}; known: given, held_out")
-    return {
-        "model": model,
-        "lobes": lobes,
-        "stretch": [tuple(pair) for pair in pairs],
-        "d_nodes": _nodes_of("d_nodes", d_nodes),
-        "g_nodes": _nodes_of("g_nodes", g_nodes),
-        "f_bins": f_bins,
-        "nodes_by_held_out": nodes == "held_out",
-    }
-
-
-def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:
-    if text is None:
+def stretch_text(stretch: ArrayLike | None) -> str | None:
+    """The exponents as the flag --stretch has them. Raises Error."""
+    if stretch is None:
         return None
-    match = re.fullmatch(r"(\d{1,4})(r?)x(\d{1,4})", text) if isinstance(text, str) else None
-    if match is None or (match[2] and name == "g_nodes"):
-        given = " ".join(repr(text).split())[:60]
-        raise Error(f"{name}={given} are no nodes; give theta x phi, as '6x48'")
-    return int(match[1]), bool(match[2]), int(match[3])
+    array = as_array(stretch, "stretch").astype(np.float64)
+    if array.ndim not in (1, 2) or array.shape[-1] != 2:
+        raise Error("stretch must be (along, across), once or for each lobe")
+    return ",".join(repr(float(x)) for x in array.ravel())
+
+
+def without_none(**optional: Any) -> dict[str, Any]:
+    """Those options that were given; the others have the defaults of the program."""
+    return {name: value for name, value in optional.items() if value is not None}

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/system/content_hash.h"
+#include "fit/fit_option.h"
 #include "io/formats/source_option.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/model_file.h"
@@ -62,7 +63,7 @@ struct DirectionsText {
 
 Key KeyOfFullFit(const SceneMaterial& material, const SceneFitSettings& settings,
                  const std::string& source_hash, const std::string& purpose) {
-  Key key("fit 4, " + purpose);
+  Key key("fit 5, " + purpose);
   key.Add("program", settings.program);
   key.Add("build", settings.build);
   key.Add("source", source_hash);
@@ -71,12 +72,10 @@ Key KeyOfFullFit(const SceneMaterial& material, const SceneFitSettings& settings
   key.Add("directions",
           material.reductions.samples ? std::visit(DirectionsText(), material.directions) : "all");
   key.Add("luminance", material.channels == SceneChannels::kLuminance);
-  key.Add("weighting", settings.weighting);
-  key.Add("lobes", settings.lobes);
-  key.Add("init", settings.init);
-  key.Add("init_seed", settings.seed);
-  key.Add("solver", settings.solver);
-  for (const SolverOption* option : OptionsReadBy(FindSolver(settings.solver).options)) {
+  const FitOptions fit = WithOptionsOf(material, settings.fit);
+  for (const FitOption& option : AllFitOptions()) key.Add(option.name, option.get(fit));
+  key.Add("init_seed", fit.seed);
+  for (const SolverOption* option : OptionsReadBy(FindSolver(fit.solver).options)) {
     std::visit([&](const auto& value) { key.Add(option->name, value); },
                option->get(settings.options));
   }

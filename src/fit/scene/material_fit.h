@@ -1,7 +1,6 @@
 #ifndef TRILOBE_FIT_SCENE_MATERIAL_FIT_H_
 #define TRILOBE_FIT_SCENE_MATERIAL_FIT_H_
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "fit/prune/prune.h"
 #include "fit/scene/fit_cache.h"
 #include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/fit_options.h"
 #include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
@@ -19,16 +19,13 @@ namespace trilobe {
 
 // Settings of the full fits of a scene's materials.
 struct SceneFitSettings {
-  std::string solver;
-  SolverOptions options;  // stop is replaced
-  std::string init;
-  std::string weighting;
-  int lobes = 3;
-  uint64_t seed = 1;  // of the start
-  // Options of reading measurements, but for SceneMaterial::options; num_threads is replaced.
+  // Options of the fits and of reading measurements, but for SceneMaterial::options;
+  // solver_options, num_threads and callbacks are replaced.
+  FitOptions fit;
   SourceOptions source;
-  std::string program;  // "trilobe 0.1.0", for model files
-  std::string build;    // build of the program; fits of another build are not reused
+  SolverOptions options;  // stop is replaced
+  std::string program;    // "trilobe 0.1.0", for model files
+  std::string build;      // build of the program; fits of another build are not reused
   // For budgets of appearance and verdicts; num_threads is replaced.
   AppearanceOptions appearance;
   bool verdicts = false;

@@ -13,6 +13,7 @@
 #include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "fit/fit_option.h"
 #include "io/formats/source_option.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
@@ -237,21 +238,42 @@ std::string FlagText(const Node& node) {
   return node.is_number() ? node.NumberText() : node.String();
 }
 
+// Takes an option, if the node has it, after `set` has tried its text.
+template <typename Row, typename Set>
+void ReadOption(const Node& node, const Row& option, const Set& set,
+                std::map<std::string, std::string>* options) {
+  if (!node.Has(option.name.c_str())) return;
+  const Node value = node[option.name.c_str()];
+  try {
+    set(FlagText(value));
+  } catch (const Error& error) {
+    value.Fail(error.what());
+  }
+  (*options)[option.name] = FlagText(value);
+}
+
 void ReadOptions(const Node& node, std::map<std::string, std::string>* options) {
   std::vector<std::string_view> known;
   for (const SourceOption& option : AllSourceOptions()) known.push_back(option.name);
+  for (const FitOption& option : AllFitOptions()) {
+    if (option.of_scenes) known.push_back(option.name);
+  }
   node.CheckObject(known);
   for (const SourceOption& option : AllSourceOptions()) {
-    if (!node.Has(option.name.c_str())) continue;
-    const Node value = node[option.name.c_str()];
-    SourceOptions tried;
-    try {
-      option.set(FlagText(value), &tried);
+    const auto set = [&option](const std::string& text) {
+      SourceOptions tried;
+      option.set(text, &tried);
       CheckSourceOptions(tried);
-    } catch (const Error& error) {
-      value.Fail(error.what());
-    }
-    (*options)[option.name] = FlagText(value);
+    };
+    ReadOption(node, option, set, options);
+  }
+  for (const FitOption& option : AllFitOptions()) {
+    const auto set = [&option](const std::string& text) {
+      FitOptions tried;
+      option.set(text, &tried);
+      CheckFitOptions(tried);
+    };
+    ReadOption(node, option, set, options);
   }
 }
 
@@ -365,12 +387,26 @@ std::vector<std::string> FilesOf(const Scene& scene) {
   return files;
 }
 
-SourceOptions WithOptionsOf(const SceneMaterial& material, SourceOptions options) {
-  for (const SourceOption& option : AllSourceOptions()) {
-    const auto own = material.options.find(option.name);
-    if (own != material.options.end()) option.set(own->second, &options);
+namespace {
+
+template <typename Row, typename Options>
+Options WithOptions(const std::map<std::string, std::string>& own, const std::vector<Row>& rows,
+                    Options options) {
+  for (const Row& option : rows) {
+    const auto text = own.find(option.name);
+    if (text != own.end()) option.set(text->second, &options);
   }
   return options;
+}
+
+}  // namespace
+
+SourceOptions WithOptionsOf(const SceneMaterial& material, SourceOptions options) {
+  return WithOptions(material.options, AllSourceOptions(), std::move(options));
+}
+
+FitOptions WithOptionsOf(const SceneMaterial& material, FitOptions options) {
+  return WithOptions(material.options, AllFitOptions(), std::move(options));
 }
 
 Scene ReadScene(const std::string& path) {

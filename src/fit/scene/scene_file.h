@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit/scene/directions.h"
+#include "trilobe/fit/fit_options.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
@@ -49,7 +50,8 @@ struct SceneMaterial {
   SceneChannels channels = SceneChannels::kRgb;
   SceneBudget budget;
   SceneReductions reductions;
-  // Options of the measurement that replace those of the command: name of a SourceOption, and text.
+  // Options that replace those of the command: name of a SourceOption or, for scenes, of a
+  // FitOption, and text.
   std::map<std::string, std::string> options;
 
   // Whether single places of the measurement are read, by a list or a histogram.
@@ -59,8 +61,9 @@ struct SceneMaterial {
   }
 };
 
-// The options by which a material's measurement is read.
+// The options by which a material's measurement is read, and those by which it is fitted.
 SourceOptions WithOptionsOf(const SceneMaterial& material, SourceOptions options);
+FitOptions WithOptionsOf(const SceneMaterial& material, FitOptions options);
 
 // The materials of a scene, in the order of its file; at least one.
 struct Scene {

@@ -11,6 +11,7 @@
 #include "core/system/process.h"
 #include "fit/choose_azimuths.h"
 #include "fit/finish/limit_light.h"
+#include "fit/fit_option.h"
 #include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
 #include "fit/prune/unmeasured_prior.h"
@@ -121,7 +122,7 @@ class MaterialFitter {
     const BrdfSamples used =
         UsedSamples(SamplesOf(measured), material_.directions, measured.anisotropic);
     const Objective objective(InChannels(used, material_.channels), models.front().spec(),
-                              WeightingFor(measured), num_threads_);
+                              OptionsFor(measured).weighting, num_threads_);
     std::vector<SceneScore> scores;
     for (const FactorModel& model : models) {
       const FactorModel judged = grey ? LuminanceOf(model) : model;
@@ -133,6 +134,21 @@ class MaterialFitter {
  private:
   ModelFile GivenModel() const { return ParseModel(source_.bytes(), source_.name()); }
 
+  // Options that were given, and change nothing where the source is a model.
+  std::vector<std::string> OptionsOfMeasurements() const {
+    std::vector<std::string> names;
+    const SourceOptions source = WithOptionsOf(material_, settings_.source);
+    for (const SourceOption* const option : GivenOptions(source)) {
+      if (option->name != "data_seed") names.push_back(option->name);  // which --seed sets, too
+    }
+    const FitOptions fit = WithOptionsOf(material_, settings_.fit);
+    for (const FitOption& option : AllFitOptions()) {
+      const bool is_of_model = option.name == "weighting";  // of the samples that stand for it
+      if (!is_of_model && IsGiven(option.name, fit)) names.push_back(option.name);
+    }
+    return names;
+  }
+
   Measurement Measured() const {
     if (is_model_) {
       // Finer than what is measured, lest nodes of D fall between.
@@ -140,12 +156,9 @@ class MaterialFitter {
       Measurement measured =
           AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
       measured.xxh128 = fingerprint_;
-      const SourceOptions given = WithOptionsOf(material_, settings_.source);
-      for (const SourceOption* const option : GivenOptions(given)) {
-        if (option->name == "data_seed") continue;  // which --seed sets, too
+      for (const std::string& option : OptionsOfMeasurements()) {
         measured.notes.push_back(
-            "--" + option->name +
-            " is for measurements, and this is a model; it changes nothing here");
+            "--" + option + " is for measurements, and this is a model; it changes nothing here");
       }
       return measured;
     }
@@ -153,12 +166,11 @@ class MaterialFitter {
     options.num_threads = num_threads_;
     // Fits and judges agree whether azimuths matter, by all samples.
     Measurement measured = source_.Read(options);
-    const Weighting weighting = WeightingFor(measured);
-    return WithAzimuthsChosen(std::move(measured), {.form = {.lobes = settings_.lobes},
-                                                    .weighting = weighting,
-                                                    .seed = settings_.seed,
-                                                    .num_threads = num_threads_,
-                                                    .stop = settings_.stop});
+    const FitOptions fit = OptionsFor(measured);
+    if (measured.table && WithOptionsOf(material_, settings_.fit).prior) {
+      measured.notes.emplace_back("--prior is of scattered samples, and changes nothing here");
+    }
+    return WithAzimuthsChosen(std::move(measured), fit);
   }
 
   const Measurement& measured() {
@@ -171,26 +183,27 @@ class MaterialFitter {
 
   // Few directions that a scene reads, in a highlight or beside it, tell no level: that is of the
   // whole measurement.
-  Weighting WeightingFor(const Measurement& measured) const {
-    Weighting weighting = FindWeighting(settings_.weighting);
+  Weighting WeightingFor(const Measurement& measured, Weighting weighting) const {
     if (!material_.reads_places()) return weighting;
     const BrdfSamples all = InChannels(SamplesOf(measured), material_.channels);
     return ForSamples(std::move(weighting), all, num_threads_);
   }
 
-  // Options of `trilobe fit`, but for what the scene says.
-  FitOptions Options() const {
-    FitOptions options;
-    options.form.lobes = settings_.lobes;
-    options.init = settings_.init;
-    options.solver = settings_.solver;
+  FitOptions OptionsFor(const Measurement& measured) const {
+    FitOptions options = WithOptionsOf(material_, settings_.fit);
     options.solver_options = [this](const ModelSpec& /*spec*/) { return settings_.options; };
-    options.weighting = WeightingFor(*measured_);
+    options.weighting = WeightingFor(measured, std::move(options.weighting));
+    if (measured.table) options.prior.reset();
     options.compare = false;
     options.limit_albedo = !material_.reads_places();
-    options.seed = settings_.seed;
     options.num_threads = num_threads_;
     options.stop = settings_.stop;
+    return options;
+  }
+
+  // The fit of what the scene uses.
+  FitOptions Options() const {
+    FitOptions options = OptionsFor(*measured_);
     const bool limited = !reads_all_directions();
     if (limited || material_.channels != SceneChannels::kRgb) {
       options.select = [this, limited, anisotropic = measured_->anisotropic](BrdfSamples samples) {

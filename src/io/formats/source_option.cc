@@ -2,10 +2,10 @@
 
 #include <charconv>
 #include <optional>
-#include <sstream>
-#include <type_traits>
+#include <utility>
 
 #include "core/base/names.h"
+#include "core/files/option_row.h"
 #include "core/files/text_lines.h"
 #include "io/formats/spectrum_bands.h"
 #include "io/formats/utia_file.h"
@@ -16,65 +16,16 @@
 namespace trilobe {
 namespace {
 
-[[noreturn]] void Fail(std::string_view name, std::string_view text, const std::string& expected) {
-  throw Error("--" + std::string(name) + "=" + std::string(text) + ": give " + expected);
-}
-
-double NumberOf(std::string_view name, std::string_view text) {
-  if (const std::optional<double> number = ToNumber(text)) return *number;
-  Fail(name, text, "a number");
-}
-
-bool TruthOf(std::string_view name, std::string_view text) {
-  if (text == "true" || text == "false") return text == "true";
-  Fail(name, text, "true or false");
-}
-
-std::string TextOf(double number) {
-  std::ostringstream text;
-  text.precision(17);
-  text << number;
-  return text.str();
-}
-
-// A name that template arguments can hold.
-template <size_t kSize>
-struct Name {
-  char text[kSize];
-  constexpr Name(const char (&name)[kSize]) {  // NOLINT(google-explicit-constructor): by a literal
-    for (size_t k = 0; k < kSize; ++k) text[k] = name[k];
-  }
-};
-
 // The row of the option that is this member.
-template <Name kName, auto kMember>
+template <OptionName kName, auto kMember>
 SourceOption Option(SourceOption row) {
-  using T = std::decay_t<decltype(SourceOptions().*kMember)>;
-  row.name = kName.text;
-  row.default_value = SourceOptions().*kMember;
-  row.set = [](std::string_view text, SourceOptions* options) {
-    if constexpr (std::is_same_v<T, std::string>) {
-      options->*kMember = std::string(text);
-    } else if constexpr (std::is_same_v<T, bool>) {
-      options->*kMember = TruthOf(kName.text, text);
-    } else {
-      options->*kMember = NumberOf(kName.text, text);
-    }
-  };
-  row.get = [](const SourceOptions& options) {
-    if constexpr (std::is_same_v<T, std::string>) {
-      return options.*kMember;
-    } else {
-      return TextOf(options.*kMember);
-    }
-  };
-  return row;
+  return MemberRow<SourceOption, kName, kMember>(std::move(row));
 }
 
 void SetTilt(std::string_view text, SourceOptions* options) {
   options->tilt_deg = text == "auto" ? std::nullopt : ToNumber(text);
   if (text != "auto" && !options->tilt_deg) {
-    Fail("tilt", text, "a number of degrees from -30 to 30, or auto");
+    FailOptionText("tilt", text, "a number of degrees from -30 to 30, or auto");
   }
 }
 
@@ -93,7 +44,7 @@ void SetCosine(std::string_view text, SourceOptions* options) {
 
 void SetAzimuth(std::string_view text, SourceOptions* options) {
   if (text != "from_mirror" && text != "from_light") {
-    Fail("azimuth", text, "from_mirror or from_light");
+    FailOptionText("azimuth", text, "from_mirror or from_light");
   }
   options->azimuth_from_mirror = text == "from_mirror";
 }
@@ -101,7 +52,7 @@ void SetAzimuth(std::string_view text, SourceOptions* options) {
 void SetDataSeed(std::string_view text, SourceOptions* options) {
   const char* const end = text.data() + text.size();
   const auto [parsed, error] = std::from_chars(text.data(), end, options->seed);
-  if (error != std::errc() || parsed != end) Fail("data_seed", text, "an integer from 0");
+  if (error != std::errc() || parsed != end) FailOptionText("data_seed", text, "an integer from 0");
 }
 
 bool IsSeedUsed(const SourceOptions& of) {
@@ -145,7 +96,7 @@ std::vector<SourceOption> MakeOptions() {
        .set = SetTilt,
        .get =
            [](const Options& of) {
-             return of.tilt_deg ? TextOf(*of.tilt_deg) : std::string("auto");
+             return of.tilt_deg ? OptionText(*of.tilt_deg) : std::string("auto");
            }},
       {.name = "cosine",
        .help = "correct a measurement that has been multiplied by cos theta_i to this power, from "
@@ -154,7 +105,10 @@ std::vector<SourceOption> MakeOptions() {
        .default_value = "0",
        .changes_values = true,
        .set = SetCosine,
-       .get = [](const Options& of) { return TextOf(of.cosine) + ",o:" + TextOf(of.cosine_o); }},
+       .get =
+           [](const Options& of) {
+             return OptionText(of.cosine) + ",o:" + OptionText(of.cosine_o);
+           }},
       Option<"scale", &Options::scale>(
           {.help = "multiply all values by this: 0.01 for percents, 0.3183 for pi f, 1 for a "
                    "reflectance that is f in 1/sr; 0: not given",
@@ -266,8 +220,7 @@ std::vector<const SourceOption*> GivenOptions(const SourceOptions& options) {
 void CheckSourceOptions(const SourceOptions& options) {
   CheckNumThreads(options.num_threads);
   for (const SourceOption& option : AllSourceOptions()) {
-    if (option.range.holds == nullptr) continue;
-    CheckInRange("--" + option.name, *ToNumber(option.get(options)), option.range);
+    CheckRange(option, options);
   }
   FindNamed("radiometry", options.radiometry, UtiaRadiometries());
   ParseCorruptions(options.corrupt);

@@ -39,12 +39,12 @@ constexpr SceneBudget kBudgets[] = {
 
 SceneFitSettings Settings(const FitCache& cache = {}) {
   SceneFitSettings settings;
-  settings.solver = "awls";
+  settings.fit.solver = "awls";
   settings.options.max_iterations = 2;
   settings.options.diagnose = false;
-  settings.init = "analytic";
-  settings.weighting = "compressive";
-  settings.lobes = 2;
+  settings.fit.init = "analytic";
+  settings.fit.weighting = FindWeighting("compressive");
+  settings.fit.form.lobes = 2;
   settings.source.noise = 0.02;
   settings.program = "test";
   settings.appearance = {.lights = 6, .size = 24};
@@ -91,7 +91,7 @@ Measurement InGrey(Measurement measured) {
 void ExpectAsWritten(const MaterialFit& fit, const Measurement& seen, double rounding = 0) {
   const ModelFile written = ParseModel(FormatModel(fit.file), "written");
   const FactorModel& model = written.model;
-  const Objective objective(SamplesOf(seen), model.spec(), FindWeighting(Settings().weighting), 1);
+  const Objective objective(SamplesOf(seen), model.spec(), Settings().fit.weighting, 1);
   const ScoreReport score = ScoreModel(objective, model);
   EXPECT_EQ(fit.used_samples, score.valid_samples);
   EXPECT_EQ(written.fit.objective, fit.pruned.objective);

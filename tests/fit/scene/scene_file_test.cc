@@ -65,12 +65,21 @@ TEST(SceneFile, MaterialsTakeTheScenesLimitsUnlessTheyHaveTheirOwn) {
   EXPECT_EQ(budget_of(R"({"sphere_psnr_db": 40})").amount, 40);
   const SceneMaterial told = Material(Text(R"(, "options": {"scale": 0.5, "outliers": true})",
                                            R"(, "options": {"scale": 2, "cosine": "o:1"})"));
-  const SourceOptions options = WithOptionsOf(told, {.noise = 0.1, .max_angle_deg = 80});
+  const SourceOptions options =
+      WithOptionsOf(told, SourceOptions{.noise = 0.1, .max_angle_deg = 80});
   EXPECT_EQ(options.scale, 2);
   EXPECT_EQ(options.cosine_o, 1);
   EXPECT_TRUE(options.outliers);
   EXPECT_EQ(options.noise, 0.1);
   EXPECT_EQ(options.max_angle_deg, 80);
+
+  const SceneMaterial fitted = Material(Text(R"(, "options": {"lobes": 1, "robust": 0.1})",
+                                             R"(, "options": {"lobes": 2, "weighting": "log"})"));
+  const FitOptions fit = WithOptionsOf(fitted, FitOptions{.smoothness = 0.02});
+  EXPECT_EQ(fit.form.lobes, 2);
+  EXPECT_EQ(fit.weighting.name, "log");
+  EXPECT_EQ(fit.robust, 0.1);
+  EXPECT_EQ(fit.smoothness, 0.02);
   EXPECT_TRUE(own.reductions.lobes);    // its own
   EXPECT_FALSE(own.reductions.tables);  // the scene's
   EXPECT_FALSE(own.reductions.samples);

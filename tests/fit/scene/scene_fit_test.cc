@@ -21,12 +21,12 @@ namespace {
 // Few steps of a fast solver with one lobe: this is not about how well it fits.
 SceneFitSettings Settings(const FitCache& cache = {}) {
   SceneFitSettings settings;
-  settings.solver = "awls";
+  settings.fit.solver = "awls";
   settings.options.max_iterations = 2;
   settings.options.diagnose = false;
-  settings.init = "analytic";
-  settings.weighting = "compressive";
-  settings.lobes = 1;
+  settings.fit.init = "analytic";
+  settings.fit.weighting = FindWeighting("compressive");
+  settings.fit.form.lobes = 1;
   settings.source.noise = 0.02;
   settings.program = "test";
   settings.cache = cache;
@@ -82,7 +82,7 @@ TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
 // Budgets of what is seen hold on the sphere as `trilobe fit` renders it, and are spent.
 TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   SceneFitSettings settings = Settings();
-  settings.lobes = 2;
+  settings.fit.form.lobes = 2;
   settings.appearance = {.lights = 6, .size = 48};
   SceneMaterial material = Material("plastic");
   material.source = "synth:plastic@30x30x60";
@@ -147,10 +147,10 @@ TEST(FitMaterial, IsJudgedByReadsWhereNoPixelShowsWhatTheSceneSees) {
 // Few directions need few numbers, and are met: mirror pairs, too.
 TEST(FitMaterial, KeepsWhatAListReads) {
   SceneFitSettings settings = Settings();
-  settings.solver = "auto";
+  settings.fit.solver = "auto";
   settings.options.max_iterations = 60;
-  settings.weighting = "appearance";
-  settings.lobes = 3;
+  settings.fit.weighting = FindWeighting("appearance");
+  settings.fit.form.lobes = 3;
   settings.verdicts = true;
   settings.appearance = {.lights = 6, .size = 24};
   SceneMaterial material = Material("plastic");
@@ -212,8 +212,8 @@ TEST(FitMaterial, NeverAddsToAModel) {
 TEST(FitMaterial, SaysThatAFractionOfAnExactFitBuysNothing) {
   SceneFitSettings settings = Settings();
   settings.source.noise = 0;
-  settings.lobes = 0;
-  settings.weighting = "uniform";
+  settings.fit.form.lobes = 0;
+  settings.fit.weighting = FindWeighting("uniform");
   SceneMaterial material = Material("felt");
   const TestDirectory directory;
   WriteFile(directory.Path("grey.csv"), [](std::ostream& out) {
