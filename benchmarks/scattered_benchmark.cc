@@ -178,7 +178,10 @@ void BM_AnisotropicEquations(benchmark::State& state) {
 void BM_AnisotropicSweep(benchmark::State& state) {
   PhaseSeconds phases;
   FactorModel model = AnisotropicModel();
-  SampleSweep sweep(AnisotropicSamples(), model.spec(), static_cast<int>(state.range(0)), &phases);
+  // They live as long as the program.
+  const std::shared_ptr<const FoldedSamples> samples(std::shared_ptr<void>(),
+                                                     &AnisotropicSamples());
+  SampleSweep sweep(samples, model.spec(), static_cast<int>(state.range(0)), &phases);
   for (auto _ : state) sweep(nullptr, &model);
 }
 

@@ -93,7 +93,8 @@ class Fitting {
 
   FitResult Run() {
     FitResult fit = RunOnShared();
-    fit.objective.OwnSamples();  // those of the measurement may be gone before
+    // Those of the measurement may be gone before.
+    fit.objective = fit.objective.WithOwnSamples();
     return fit;
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -89,7 +90,7 @@ Diagnosis Diagnose(const Objective& objective, const FactorModel& model) {
 }
 
 int UndeterminedByThetaD(const Objective& objective) {
-  const FoldedSamples* const samples = objective.folded_samples();
+  const std::shared_ptr<const FoldedSamples> samples = objective.folded_samples();
   const ModelSpec& spec = objective.spec();
   if (samples == nullptr) return 0;  // every bin of F has its own samples
   const FoldedSamples::Lookup& F = samples->lookups[samples->order.F()];

@@ -157,7 +157,8 @@ struct Objective::Prepared {
         spec(form),
         weighting(ForSamples(weights, Checked(*own, form, num_threads), num_threads)) {
     if (ReadsBinByBin(spec, *own)) {
-      folded = std::make_unique<FoldedGrid>(Fold(*own, spec.g_axis.size, weighting, num_threads));
+      folded =
+          std::make_shared<const FoldedGrid>(Fold(*own, spec.g_axis.size, weighting, num_threads));
       measured_energy = folded->measured_energy;
       irreducible_energy = folded->constant;
       coverage = FoldedCoverage(*folded);
@@ -169,6 +170,14 @@ struct Objective::Prepared {
     }
   }
 
+  // Nothing is computed yet.
+  Prepared(std::shared_ptr<const Prepared> data, std::shared_ptr<const BrdfSamples> samples,
+           const ModelSpec& form, Weighting weights)
+      : measured(std::move(data)),
+        own(std::move(samples)),
+        spec(form),
+        weighting(std::move(weights)) {}
+
   // The samples of `data`, which are scattered, and others behind them.
   Prepared(std::shared_ptr<const Prepared> data, BrdfSamples added, int num_threads)
       : measured(std::move(data)),
@@ -179,6 +188,7 @@ struct Objective::Prepared {
     FoldedPart part;
     FoldAll(num_threads, &part);
     part.whole = folded_samples;
+    const std::lock_guard<std::mutex> lock(measured->mutex);
     measured->as_part = std::make_shared<const FoldedPart>(std::move(part));
   }
 
@@ -243,19 +253,32 @@ struct Objective::Prepared {
   }
 
   // Made anew after ReleaseFold.
-  const FoldedSamples& Folded(int num_threads) const {
+  std::shared_ptr<const FoldedSamples> Folded(int num_threads) const {
     const std::lock_guard<std::mutex> lock(mutex);
     if (folded_samples == nullptr) {
       folded_samples = std::make_shared<const FoldedSamples>(Fold(
           size(), [&](int j) { return Sample(j); }, num_threads));
     }
-    return *folded_samples;
+    return folded_samples;
   }
 
   // The samples as part of those of a prior, if they have no fold of their own.
   std::shared_ptr<const FoldedPart> Part() const {
     const std::lock_guard<std::mutex> lock(mutex);
     return folded_samples == nullptr ? as_part : nullptr;
+  }
+
+  // The same with other samples, which are equal.
+  std::shared_ptr<Prepared> With(std::shared_ptr<const BrdfSamples> samples) const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    auto copy = std::make_shared<Prepared>(measured, std::move(samples), spec, weighting);
+    copy->measured_energy = measured_energy;
+    copy->irreducible_energy = irreducible_energy;
+    copy->coverage = coverage;
+    copy->folded = folded;
+    copy->folded_samples = folded_samples;
+    copy->as_part = as_part;
+    return copy;
   }
 
   void ReleaseFold() const {
@@ -265,12 +288,12 @@ struct Objective::Prepared {
   }
 
   const std::shared_ptr<const Prepared> measured;  // whose samples come first, or null
-  mutable std::shared_ptr<const BrdfSamples> own;  // OwnSamples may replace them by a copy
-  const ModelSpec spec;                            // of which axes and stretches count
+  const std::shared_ptr<const BrdfSamples> own;
+  const ModelSpec spec;  // of which axes and stretches count
   const Weighting weighting;
   double measured_energy = 0, irreducible_energy = 0;
   CoverageByChannel coverage;
-  std::unique_ptr<const FoldedGrid> folded;
+  std::shared_ptr<const FoldedGrid> folded;
   mutable std::mutex mutex;  // of what ReleaseFold changes
   mutable std::shared_ptr<const FoldedSamples> folded_samples;
   mutable std::shared_ptr<const FoldedPart> as_part;
@@ -370,8 +393,10 @@ BrdfSamples Objective::EvenlySpread(int count) const {
   return prepared_->Selected(EvenlySpreadNumbers(num_samples(), prepared_->own->grid, count));
 }
 
-void Objective::OwnSamples() const {
-  prepared_->own = std::make_shared<const BrdfSamples>(*prepared_->own);
+Objective Objective::WithOwnSamples() const {
+  Objective owner = *this;
+  owner.prepared_ = prepared_->With(std::make_shared<const BrdfSamples>(*prepared_->own));
+  return owner;
 }
 
 void Objective::ReleaseFold() const { prepared_->ReleaseFold(); }
@@ -384,8 +409,8 @@ double Objective::IrreducibleEnergy() const { return prepared_->irreducible_ener
 
 const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 
-const FoldedSamples* Objective::folded_samples() const {
-  return folded() != nullptr ? nullptr : &prepared_->Folded(num_threads_);
+std::shared_ptr<const FoldedSamples> Objective::folded_samples() const {
+  return folded() != nullptr ? nullptr : prepared_->Folded(num_threads_);
 }
 
 double Objective::Value(const FactorModel& model) const {

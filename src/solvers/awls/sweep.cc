@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "core/algebra/nonnegative_least_squares.h"
 
@@ -67,11 +69,12 @@ void GridSweep::UpdateG(const OnElement& on_element, FactorModel* model) {
 
 static_assert(1 + kMaxLobes <= kMaxNonnegativeUnknowns);
 
-SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
-                         PhaseSeconds* phases)
+SampleSweep::SampleSweep(std::shared_ptr<const FoldedSamples> samples, const ModelSpec& spec,
+                         int num_threads, PhaseSeconds* phases)
     : Sweep(/*rounds=*/1),  // each costs as much as the first
       phases_(phases),
-      lookups_(samples, spec, num_threads),
+      samples_(std::move(samples)),
+      lookups_(*samples_, spec, num_threads),
       shadowing_(lookups_) {
   const ScopedTimer timer(&phases->preparing);
   sums_.emplace_back(lookups_, ParameterKind::kAmplitudes, 0, 1 + spec.lobes);
@@ -158,7 +161,7 @@ void SampleSweep::UpdateG(const OnElement& on_element, FactorModel* model) {
 
 std::unique_ptr<Sweep> MakeSweep(const Objective& objective, PhaseSeconds* phases) {
   if (objective.folded() != nullptr) return std::make_unique<GridSweep>(objective, phases);
-  return std::make_unique<SampleSweep>(*objective.folded_samples(), objective.spec(),
+  return std::make_unique<SampleSweep>(objective.folded_samples(), objective.spec(),
                                        objective.num_threads(), phases);
 }
 

@@ -78,7 +78,7 @@ class GridSweep : public Sweep {
 // (ShadowingUpdates).
 class SampleSweep : public Sweep {
  public:
-  SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
+  SampleSweep(std::shared_ptr<const FoldedSamples> samples, const ModelSpec& spec, int num_threads,
               PhaseSeconds* phases);
 
   void operator()(const OnElement& on_element, FactorModel* model) override;
@@ -92,6 +92,7 @@ class SampleSweep : public Sweep {
   void UpdateFrom(BlockEquations* sums, FactorModel* model, const std::function<void()>& update);
 
   PhaseSeconds* const phases_;
+  const std::shared_ptr<const FoldedSamples> samples_;
   SampleLookups lookups_;
   // Sums for amplitudes, for each range of tables of D that one stretch reads, and for F.
   std::vector<BlockEquations> sums_;

@@ -126,8 +126,9 @@ class NormalEquations::Condensed {
 
 NormalEquations::NormalEquations(const Objective& objective) : objective_(objective) {
   if (objective.folded() == nullptr) {
-    of_samples_ = std::make_unique<ScatteredEquations>(*objective.folded_samples(),
-                                                       objective.spec(), objective.num_threads());
+    fold_ = objective.folded_samples();
+    of_samples_ =
+        std::make_unique<ScatteredEquations>(*fold_, objective.spec(), objective.num_threads());
   } else {
     condensed_ = std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(),
                                              objective.spec());

@@ -229,11 +229,15 @@ TEST(Objective, AddedSamplesShareThoseOfTheData) {
   EXPECT_LT(both.folded_samples()->size(), both.num_samples());
   EXPECT_EQ(both.samples().rho, joined.rho);
   EXPECT_EQ(both.samples().multiplicity, joined.multiplicity);
+  const std::shared_ptr<const FoldedSamples> in_use = both.folded_samples();
   data.ReleaseFold();
   EXPECT_EQ(data.Value(model), alone.Value(model));
   EXPECT_EQ(data.folded_samples()->rho, alone.folded_samples()->rho);
   both.ReleaseFold();
   EXPECT_EQ(both.Value(model), Objective(alone, joined).Value(model));
+  // Whoever uses a fold keeps it.
+  EXPECT_NE(both.folded_samples(), in_use);
+  EXPECT_EQ(both.folded_samples()->rho, in_use->rho);
 }
 
 TEST(Objective, OwnsSamplesThatWereShared) {
@@ -242,9 +246,13 @@ TEST(Objective, OwnsSamplesThatWereShared) {
   const Objective objective(samples, spec, FindWeighting("compressive"));
   EXPECT_EQ(&objective.samples(), samples.get());
   const std::vector<Rgb> rho = samples->rho;
-  objective.OwnSamples();
+  const FactorModel model = RandomModel(spec, 4, 0.1);
+  const double E = objective.Value(model);
+  const Objective owner = objective.WithOwnSamples();
   samples->rho.clear();
-  EXPECT_EQ(objective.samples().rho, rho);
+  EXPECT_EQ(owner.samples().rho, rho);
+  EXPECT_EQ(owner.Value(model), E);
+  EXPECT_EQ(owner.folded_samples(), objective.folded_samples());  // what was computed is shared
 }
 
 TEST(Objective, CoverageCountsTheWeightOfTheReaders) {

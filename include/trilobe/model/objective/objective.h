@@ -15,8 +15,8 @@
 namespace trilobe {
 
 // E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
-// docs/objective.md), prepared for one spec and weighting. No function changes what others return;
-// all but OwnSamples and ReleaseFold, which free or copy what is shared, are thread-safe.
+// docs/objective.md), prepared for one spec and weighting. Immutable and thread-safe: what is
+// computed at the first call is kept, and shared by copies.
 //
 //   const Objective objective(ValidSamples(table), model.spec(), FindWeighting("compressive"));
 //   const double E = objective.Value(model), relative = E / objective.MeasuredEnergy();
@@ -42,8 +42,8 @@ class Objective {
 
   // The samples of another objective, which are scattered, and others with them, which constrain
   // the model between them and count `weight` each; data() is that of the other one. It takes less
-  // memory than the constructor above: the samples of the other are shared, and neither is folded
-  // any more (ReleaseFold), nor may it be in use. Throws Error as above.
+  // memory than the constructor above: the samples of the other are shared, and are folded together
+  // with these alone (ReleaseFold). Throws Error as above.
   Objective(Objective objective, BrdfSamples added, double weight);
 
   // The same samples, those of a prior as if they were measured, for another number of threads.
@@ -89,11 +89,12 @@ class Objective {
   BrdfSamples Thinned(int stride) const;
   BrdfSamples EvenlySpread(int count) const;
 
-  // Copies samples that are shared, for those who end their life. Not while they are in use.
-  void OwnSamples() const;
+  // The same objective with a copy of the samples, for those whose samples are about to end.
+  Objective WithOwnSamples() const;
 
-  // Frees the folded samples of this objective and of all that share them, if they are scattered.
-  // They are made again where they are asked for. Not while they are in use.
+  // Forgets the folded samples of this objective and of all that share them, if they are scattered,
+  // which frees their memory as soon as nobody uses them. They are made again where they are asked
+  // for.
   void ReleaseFold() const;
 
   // All samples with stencils. Computed at the first call (280 bytes per sample).
@@ -103,8 +104,8 @@ class Objective {
   // stretched D, or with tables of other bins than the grid's.
   const FoldedGrid* folded() const;
 
-  // The same for all other samples; null if folded() is not.
-  const FoldedSamples* folded_samples() const;
+  // The same for all other samples; null if folded() is not. Hold it while you use it.
+  std::shared_ptr<const FoldedSamples> folded_samples() const;
 
   // The folded samples by knot intervals of G. Computed at the first call (64 bytes per sample).
   // Throws Error if folded() is null.

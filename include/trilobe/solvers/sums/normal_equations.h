@@ -26,6 +26,7 @@ class NormalEquations {
   class Condensed;
   const Objective& objective_;
   std::unique_ptr<Condensed> condensed_;            // for samples on a grid, else null
+  std::shared_ptr<const FoldedSamples> fold_;       // of other samples, else null
   std::unique_ptr<ScatteredEquations> of_samples_;  // for other samples, else null
 };
 
