@@ -1,12 +1,10 @@
 #include "fit/choose_form.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
-#include "core/system/process.h"
+#include "fit/finish/search.h"
 #include "model/objective/canonical_form.h"
 #include "trilobe/core/base/error.h"
 
@@ -36,27 +34,14 @@ std::optional<ModelSpec> OnFinestNodes(const ModelSpec& form, const HemisphereGr
   return std::nullopt;
 }
 
-ModelCandidate Judged(const std::string& name, const SolvedForm& form,
-                      const std::function<double(const FactorModel&)>& judge, double seconds) {
-  FactorModel model = form.model;
-  Canonicalize(form.data, &model);
-  const double score = judge(model);
-  return {.name = name,
-          .num_parameters = form.model.spec().num_parameters(),
-          .E = form.summary.final_objective,
-          // NaN has no order: it ranks below all others.
-          .score = std::isnan(score) ? -std::numeric_limits<double>::infinity() : score,
-          .seconds = seconds};
-}
-
 }  // namespace
 
-std::vector<AnisotropicForm> AnisotropicForms(const ModelSpec& by_default,
-                                              const HemisphereGrid& data, int max_parameters) {
-  std::vector<AnisotropicForm> forms;
+std::vector<FormSpec> AnisotropicForms(const ModelSpec& by_default, const HemisphereGrid& data,
+                                        int max_parameters) {
+  std::vector<FormSpec> forms;
   const auto add = [&](const std::string& name, const std::optional<ModelSpec>& spec) {
     if (!spec) return;
-    const auto same = [&](const AnisotropicForm& form) { return form.spec == *spec; };
+    const auto same = [&](const FormSpec& form) { return form.spec == *spec; };
     if (std::ranges::none_of(forms, same)) forms.push_back({name, *spec});
   };
   const std::optional<ModelSpec> finest = OnFinestNodes(by_default, data, max_parameters);
@@ -82,27 +67,28 @@ std::vector<AnisotropicForm> AnisotropicForms(const ModelSpec& by_default,
   return forms;
 }
 
-ChosenForm ChooseForm(const std::vector<AnisotropicForm>& forms, SolvedForm first,
-                      const std::function<double(const FactorModel&)>& judge,
-                      const std::function<SolvedForm(const AnisotropicForm&)>& solve,
+ChosenForm ChooseForm(const std::vector<FormSpec>& forms, SolvedForm first, const Judge& judge,
+                      const std::function<SolvedForm(const FormSpec&)>& solve,
                       const StopCheck& stop) {
-  const double seconds = first.summary.seconds;
-  ChosenForm best{.form = std::move(first), .candidates = {}};
-  best.candidates.push_back(Judged(forms.front().name, best.form, judge, seconds));
+  Search search(judge, {.over_first = kAhead});
+  const auto judged = [&search](const FormSpec& form, const SolvedForm& solved) {
+    FactorModel model = solved.model;
+    Canonicalize(solved.data, &model);
+    search.Try(form.name, model, form.spec.num_parameters(), solved.summary.final_objective);
+  };
+  SolvedForm best = std::move(first);
+  judged(forms.front(), best);
+  search.last().seconds = best.summary.seconds;
+  search.TakeLast();
   for (size_t k = 1; k < forms.size() && !stop(); ++k) {
-    const Stopwatch since;
     SolvedForm form = solve(forms[k]);
     if (stop()) break;  // what was stopped half-way says nothing
-    best.candidates.push_back(Judged(forms[k].name, form, judge, since.Seconds()));
-    const double score = best.candidates.back().score;
-    if (!(score > best.candidates[best.chosen].score &&
-          score > best.candidates.front().score + kAhead)) {
-      continue;
-    }
-    best.chosen = static_cast<int>(k);
-    best.form = std::move(form);
+    judged(forms[k], form);
+    if (!search.LastLeads()) continue;
+    search.TakeLast();
+    best = std::move(form);
   }
-  return best;
+  return {.form = std::move(best), .candidates = search.candidates(), .chosen = search.chosen()};
 }
 
 }  // namespace trilobe

@@ -2,11 +2,10 @@
 #define TRILOBE_FIT_CHOOSE_FORM_H_
 
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/fit/prune/model_choice.h"
+#include "trilobe/fit/finish/candidate.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/model_spec.h"
@@ -15,18 +14,12 @@
 
 namespace trilobe {
 
-// A form that --model=auto tries.
-struct AnisotropicForm {
-  std::string name;  // "as fitted", "4 lobes", "D by channel"
-  ModelSpec spec;
-};
-
 // Forms of at most max_parameters parameters, first `by_default` or the nearest to it. Each has D
 // and G on the finest nodes within the budget, so one more lobe or tables by channel mean fewer
 // nodes. Nodes are not finer than the data resolve and, unless the budget exceeds the size of
 // `by_default`, not finer than its own. Throws Error if no nodes are few enough.
-std::vector<AnisotropicForm> AnisotropicForms(const ModelSpec& by_default,
-                                              const HemisphereGrid& data, int max_parameters);
+std::vector<FormSpec> AnisotropicForms(const ModelSpec& by_default, const HemisphereGrid& data,
+                                        int max_parameters);
 
 // Lead that another form than the default needs [dB]; smaller leads are within the accuracy of the
 // judges (docs/decisions/forms.md).
@@ -41,16 +34,15 @@ struct SolvedForm {
 
 struct ChosenForm {
   SolvedForm form;
-  std::vector<ModelCandidate> candidates;  // in the order tried
-  int chosen = 0;                          // index of the chosen one
+  std::vector<Candidate> candidates;  // in the order tried
+  int chosen = 0;                     // index of the chosen one
 };
 
 // Fits the forms after the first by `solve` and returns the form with the highest score by `judge`
 // [dB], which gets canonical models; the first form if none leads it by kAhead. If stopped, chooses
 // among the finished ones.
-ChosenForm ChooseForm(const std::vector<AnisotropicForm>& forms, SolvedForm first,
-                      const std::function<double(const FactorModel&)>& judge,
-                      const std::function<SolvedForm(const AnisotropicForm&)>& solve,
+ChosenForm ChooseForm(const std::vector<FormSpec>& forms, SolvedForm first, const Judge& judge,
+                      const std::function<SolvedForm(const FormSpec&)>& solve,
                       const StopCheck& stop);
 
 }  // namespace trilobe

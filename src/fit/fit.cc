@@ -104,9 +104,9 @@ class Fitting {
     ModelSpec spec = options_.start_model ? options_.start_model->spec()
                                           : SpecFor(measurement_, options_.form, samples->size());
     if (options_.choose_form) MakeReadyToChoose(samples->size(), &spec);
-    const std::vector<NodeCandidate> nodes = options_.start_model
-                                                 ? std::vector<NodeCandidate>()
-                                                 : NodesToTry(measurement_, options_.form, spec);
+    const std::vector<FormSpec> nodes = options_.start_model
+                                             ? std::vector<FormSpec>()
+                                             : NodesToTry(measurement_, options_.form, spec);
     PriorWeight(measurement_, options_);  // its error
     if (options_.bands && measurement_.bands > 0 && measurement_.samples.spectra == nullptr) {
       throw Error(measurement_.source +
@@ -162,7 +162,7 @@ class Fitting {
     isotropic_budget_ = 0;
   }
 
-  void ChooseAmong(const std::vector<NodeCandidate>& nodes, FitResult* fit, FactorModel* model) {
+  void ChooseAmong(const std::vector<FormSpec>& nodes, FitResult* fit, FactorModel* model) {
     NodeChoiceOptions choice{.seed = options_.seed,
                              .prior = PriorWeight(measurement_, options_),
                              .grid = GridOf(measurement_),
@@ -173,7 +173,7 @@ class Fitting {
                                  },
                              .stop = options_.stop};
     fit->nodes = ChooseNodes(fit->objective, nodes, choice);
-    fit->objective = Objective(fit->objective, fit->nodes->tried[fit->nodes->chosen].spec);
+    fit->objective = Objective(fit->objective, fit->nodes->model.spec());
     *model = options_.stop() ? fit->nodes->model  // better than a starting point that no solver
                                                   // will improve
                              : Start(fit->objective);
@@ -270,7 +270,7 @@ class Fitting {
       const Objective samples = first.data;
       ChosenForm chosen = ChooseForm(
           forms_, std::move(first), judge,
-          [&](const AnisotropicForm& other) { return solve(samples, other.spec); }, options_.stop);
+          [&](const FormSpec& other) { return solve(samples, other.spec); }, options_.stop);
       fit->finished.candidates = std::move(chosen.candidates);
       fit->finished.chosen = chosen.chosen;
       return std::move(chosen.form);
@@ -417,7 +417,7 @@ class Fitting {
   const FitOptions options_;
   const BrdfTable* const table_;  // as the whole of it is fitted
   PictureData pictured_;          // of choices among forms_
-  std::vector<AnisotropicForm> forms_ = {};
+  std::vector<FormSpec> forms_ = {};
   int isotropic_budget_ = 0;  // FinishOptions::max_parameters
   int too_few_to_choose_ = 0;
   Stopwatch stopwatch_;

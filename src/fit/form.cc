@@ -118,8 +118,8 @@ std::string ModelName(const ModelSpec& spec) {
   return "other";
 }
 
-std::vector<NodeCandidate> NodesToTry(const Measurement& measurement, const FormOptions& options,
-                                      const ModelSpec& spec) {
+std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptions& options,
+                                  const ModelSpec& spec) {
   if (!options.nodes_by_held_out) return {};
   if (!spec.anisotropic()) {
     throw Error(measurement.source + ": --nodes=held_out is for anisotropic models, and this is " +

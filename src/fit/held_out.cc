@@ -125,7 +125,7 @@ ChosenModel ChooseModel(const Objective& solved, const HeldOutPart& held_out,
       .stop = stop};
   ChosenModel chosen = ChooseModel(part, first, choice);
   const bool may_stay = fitted.spec().num_parameters() <= max_parameters;
-  const std::vector<ModelCandidate>& tried = chosen.candidates;
+  const std::vector<Candidate>& tried = chosen.candidates;
   if (may_stay && !(tried[chosen.chosen].score > tried.front().score + kAhead)) {
     chosen.chosen = 0;
     chosen.model = fitted;

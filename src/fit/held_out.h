@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fit/prune/model_choice.h"
 #include "trilobe/core/base/stop_check.h"
-#include "trilobe/fit/prune/model_choice.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/objective.h"

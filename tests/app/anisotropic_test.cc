@@ -260,7 +260,7 @@ TEST_F(AnisotropicCommands, FitChoosesTheFormThatLooksBest) {
 }
 
 TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
-  ExpectRefusal({"fit", kSilk, "--nodes=all"}, "known: given, held_out");
+  ExpectRefusal({"fit", kSilk, "--nodes=all"}, "--nodes=all: give given or held_out");
   ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--d_nodes=4x12"}, "leave out --d_nodes");
   ExpectRefusal({"fit", kSilk, "--stretch=0.1,0.2"}, "--stretch is for isotropic models");
   ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--model=isotropic"},

@@ -37,8 +37,7 @@ TEST(FitArguments, NumbersOutOfTheirRange) {
   }
   for (const double bad : {-1.0, kNaN, kInfinity}) {
     EXPECT_THAT(ErrorOf([&] {
-                  ChooseNodes(objective, {NodeCandidate{.name = "own", .spec = spec}},
-                              {.prior = bad});
+                  ChooseNodes(objective, {FormSpec{.name = "own", .spec = spec}}, {.prior = bad});
                 }),
                 HasSubstr("prior"));
   }

@@ -19,21 +19,21 @@ const ModelSpec& Default() {
   return spec;
 }
 
-std::vector<std::string> Names(const std::vector<AnisotropicForm>& forms) {
+std::vector<std::string> Names(const std::vector<FormSpec>& forms) {
   std::vector<std::string> names;
   names.reserve(forms.size());
-  for (const AnisotropicForm& form : forms) names.push_back(form.name);
+  for (const FormSpec& form : forms) names.push_back(form.name);
   return names;
 }
 
 TEST(AnisotropicForms, SpendAsMuchAsTheDefaultOnOtherThings) {
   const int budget = Default().num_parameters();
-  const std::vector<AnisotropicForm> forms = AnisotropicForms(Default(), {6, 48}, budget);
+  const std::vector<FormSpec> forms = AnisotropicForms(Default(), {6, 48}, budget);
   EXPECT_THAT(Names(forms), ElementsAre("as fitted", "4 lobes", "D by channel"));
   EXPECT_EQ(forms[0].spec, Default());
   EXPECT_EQ(forms[1].spec.lobes, 4);
   EXPECT_TRUE(forms[2].spec.D.per_channel);
-  for (const AnisotropicForm& form : forms) {
+  for (const FormSpec& form : forms) {
     EXPECT_LE(form.spec.num_parameters(), budget);
     EXPECT_GT(form.spec.num_parameters(), 0.8 * budget);
     EXPECT_TRUE(form.spec.g_axis.reaches_horizon());
@@ -45,7 +45,7 @@ TEST(AnisotropicForms, KeepToTheBudgetAndToTheData) {
   EXPECT_THAT(Names(AnisotropicForms(Default(), {6, 48}, 4500)),
               ElementsAre("as fitted", "finer nodes", "4 lobes", "D by channel"));
   for (const int budget : {150, 400, 1000, 4500}) {
-    for (const AnisotropicForm& form : AnisotropicForms(Default(), {6, 12}, budget)) {
+    for (const FormSpec& form : AnisotropicForms(Default(), {6, 12}, budget)) {
       EXPECT_LE(form.spec.num_parameters(), budget) << form.name;
       if (form.name != "as fitted") {
         EXPECT_LE(form.spec.d_axis.phi_nodes, 12) << form.name;

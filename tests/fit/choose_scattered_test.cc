@@ -68,7 +68,7 @@ TEST(FitOfScattered, ChoosesTheFormThatTheMaterialNeeds) {
   const Measurement measured = ByChannel();
   const FitOptions options = Auto(250);
   const FitResult fit = Fit(measured, options);
-  const std::vector<ModelCandidate>& candidates = fit.finished.candidates;
+  const std::vector<Candidate>& candidates = fit.finished.candidates;
   const int chosen = fit.finished.chosen;
   ASSERT_GT(chosen, 0);
   EXPECT_EQ(candidates[0].name, "as fitted");
@@ -145,12 +145,12 @@ TEST(FitOfScattered, ChoosesAmongAnisotropicForms) {
     return SolverOptions{.max_iterations = 3, .diagnose = false};
   };
   const FitResult fit = Fit(measured, options);
-  const std::vector<ModelCandidate>& candidates = fit.finished.candidates;
+  const std::vector<Candidate>& candidates = fit.finished.candidates;
   const int chosen = fit.finished.chosen;
   ASSERT_GE(candidates.size(), 3U);
   const double samples = static_cast<double>(measured.samples.size());
   EXPECT_NEAR(fit.finished.held_out, samples / 5, samples / 20);
-  for (const ModelCandidate& candidate : candidates) {
+  for (const Candidate& candidate : candidates) {
     EXPECT_LE(candidate.num_parameters, 350) << candidate.name;
     EXPECT_TRUE(chosen == 0 || candidates[chosen].score >= candidate.score) << candidate.name;
   }

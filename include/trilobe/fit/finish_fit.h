@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/finish/candidate.h"
 #include "trilobe/fit/finish/synthetic_prior.h"
-#include "trilobe/fit/prune/model_choice.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_table.h"
@@ -49,10 +49,10 @@ struct FinishedFit {
   Objective objective;  // for the spec of `model`
   FactorModel model;    // in canonical form
   std::optional<TableLayout> layout = std::nullopt;
-  std::vector<FinishingStep> steps = {};        // steps that changed the model
-  std::vector<ModelCandidate> candidates = {};  // empty without max_parameters
-  int chosen = -1;                              // index of the chosen candidate
-  int held_out = 0;                             // samples that judged them; 0: pictures did
+  std::vector<FinishingStep> steps = {};   // steps that changed the model
+  std::vector<Candidate> candidates = {};  // empty without max_parameters
+  int chosen = -1;                         // index of the chosen candidate
+  int held_out = 0;                        // samples that judged them; 0: pictures did
   // Reflectance::Error before and after the step "reflected_light".
   struct Matched {
     double error_before = 0, error_after = 0;

@@ -50,7 +50,7 @@ struct FitResult {
   // Changes to the solver's model (FinishedFit).
   struct Finished {
     std::vector<FinishingStep> steps = {};
-    std::vector<ModelCandidate> candidates = {};
+    std::vector<Candidate> candidates = {};
     int chosen = -1;
     int held_out = 0;           // samples that judged the candidates; 0: pictures did
     int too_few_to_choose = 0;  // samples that choose_form needs, if there were fewer; else 0

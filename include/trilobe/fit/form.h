@@ -61,8 +61,8 @@ ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, in
 std::string ModelName(const ModelSpec& spec);
 
 // Candidates for ChooseNodes; empty without nodes_by_held_out. Throws Error for an isotropic spec.
-std::vector<NodeCandidate> NodesToTry(const Measurement& measurement, const FormOptions& options,
-                                      const ModelSpec& spec);
+std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptions& options,
+                                  const ModelSpec& spec);
 
 }  // namespace trilobe
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/system/process.h"
+#include "fit/finish/search.h"
 #include "model/objective/lobes.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/directions.h"
@@ -20,7 +21,7 @@ namespace trilobe {
 namespace {
 
 constexpr int kOneOf = 5;              // pairs of directions of which one is held out
-constexpr double kWorthwhile = 0.99;   // of the error before: what finer nodes must get below
+constexpr double kWorthwhile = 0.99;   // of E before, held out: finer nodes must get below
 constexpr int kFirstIterations = 12;   // from the starting point
 constexpr int kFurtherIterations = 6;  // from the fit on coarser nodes
 
@@ -46,18 +47,18 @@ std::string Nodes(int rings, const char* steps, int phis) {
 
 }  // namespace
 
-std::vector<NodeCandidate> NodeLadder(const ModelSpec& spec, int thetas, int phis) {
+std::vector<FormSpec> NodeLadder(const ModelSpec& spec, int thetas, int phis) {
   struct Rung {
     int d_rings, d_phis, g_rings, g_phis;
   };
   constexpr Rung kRungs[] = {
       {8, 24, 6, 16}, {12, 36, 6, 24}, {16, 48, 6, 32}, {20, 60, 8, 40}, {24, 72, 10, 48}};
-  std::vector<NodeCandidate> ladder;
+  std::vector<FormSpec> ladder;
   for (const Rung& rung : kRungs) {
     const int d_phis = std::clamp(phis, 4, rung.d_phis);
     const int g_rings = std::clamp(thetas, 6, rung.g_rings);
     const int g_phis = std::clamp(phis / 2, 4, rung.g_phis);
-    NodeCandidate candidate = {
+    FormSpec candidate = {
         .name = "D " + Nodes(rung.d_rings, "r", d_phis) + ", G " + Nodes(g_rings, "", g_phis),
         .spec = spec};
     candidate.spec.d_axis = Axis::EvenPolar(rung.d_rings, Axis::Steps::kOfRoot, d_phis);
@@ -82,7 +83,7 @@ std::vector<bool> HeldOut(const BrdfSamples& samples, uint64_t seed) {
   return held_out;
 }
 
-NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& ladder,
+NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladder,
                        const NodeChoiceOptions& options) {
   const Stopwatch since;
   const BrdfSamples& samples = data.samples();
@@ -99,7 +100,13 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   const auto objective_of = [&](BrdfSamples part) {
     return Objective(std::move(part), ladder[0].spec, data.weighting(), threads);
   };
-  const Objective judge = objective_of(Selected(samples, held));
+  const Objective held_back = objective_of(Selected(samples, held));
+  const auto relative_E = [&](const FactorModel& model) {
+    const Objective judged(held_back, model.spec());
+    return judged.Value(model) / judged.MeasuredEnergy();
+  };
+  Search search([&](const FactorModel& model) { return -10 * std::log10(relative_E(model)); },
+                {.over_leader = -10 * std::log10(kWorthwhile)});
   Objective fitted = objective_of(Selected(samples, kept));
   if (options.prior > 0) {
     fitted = Objective(
@@ -107,9 +114,9 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
         WithPrior(fitted, {.weight = options.prior, .grid = options.grid, .stop = options.stop}));
   }
   std::optional<FactorModel> model;
-  NodeChoice choice = {.model = FactorModel(ladder[0].spec), .held_out = judge.samples().size()};
-  for (const NodeCandidate& rung : ladder) {
-    const Stopwatch of_this;
+  NodeChoice choice = {.model = FactorModel(ladder[0].spec),
+                       .held_out = held_back.samples().size()};
+  for (const FormSpec& rung : ladder) {
     const Objective objective(fitted, rung.spec);
     SolverOptions solver;
     solver.max_iterations = model ? kFurtherIterations : kFirstIterations;
@@ -120,21 +127,16 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
     model =
         model ? WithAxes(*model, rung.spec) : InitialModels().front().make(objective, options.seed);
     const SolverSummary summary = MakeSolver("varpro")->Solve(objective, solver, &*model);
-    const Objective judged(judge, rung.spec);
-    choice.tried.push_back(rung);
-    NodeCandidate& tried = choice.tried.back();
-    tried.error = judged.Value(*model) / judged.MeasuredEnergy();
-    tried.seconds = of_this.Seconds();
-    const int last = static_cast<int>(choice.tried.size()) - 1;
+    search.Try(rung.name, *model, rung.spec.num_parameters(), relative_E(*model));
+    const bool interrupted = summary.stop_reason == StopReason::kInterrupted;
     // An interrupted fit says nothing against the candidate before.
-    if (last > 0 && (summary.stop_reason == StopReason::kInterrupted ||
-                     !(tried.error < kWorthwhile * choice.tried[choice.chosen].error))) {
-      break;
-    }
-    choice.chosen = last;
+    if (search.has_leader() && (interrupted || !search.LastLeads())) break;
+    search.TakeLast();
     choice.model = *model;
-    if (summary.stop_reason == StopReason::kInterrupted) break;
+    if (interrupted) break;
   }
+  choice.tried = search.candidates();
+  choice.chosen = search.chosen();
   choice.seconds = since.Seconds();
   return choice;
 }

@@ -1,17 +1,16 @@
-#include "trilobe/fit/prune/model_choice.h"
+#include "fit/prune/model_choice.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/system/process.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
+#include "fit/finish/search.h"
 #include "fit/finish/stretch_search.h"
 #include "fit/finish/without_rings.h"
 #include "fit/prune/model_forms.h"
@@ -22,7 +21,6 @@
 #include "model/objective/gauge.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/objective/reconstruct.h"
@@ -92,6 +90,7 @@ class ModelSearch {
       : objective_(objective),
         fitted_(fitted),
         options_(options),
+        search_(options.judge, {.max_parameters = options.max_parameters}),
         all_(objective),
         some_(Thinned(objective, kSomeSamples)),
         few_(Thinned(objective, kFewSamples)),
@@ -101,16 +100,18 @@ class ModelSearch {
 
   ChosenModel Run() {
     const TableLayout full = TableLayout::Full(fitted_.spec());
-    Judge("as fitted", fitted_, full, objective_.Value(fitted_));
+    Try("as fitted", fitted_, full, objective_.Value(fitted_));
     some_of_fit_ = some_.own().Value(fitted_);
     if (options_.judge_beyond) beyond_ = options_.judge_beyond(fitted_);
     Choose(fitted_, full, objective_.weighting());
-    if (best_.chosen < 0) Thin("as fitted", objective_.weighting(), fitted_);
-    if (best_.chosen < 0) {
+    if (!search_.has_leader()) Thin("as fitted", objective_.weighting(), fitted_);
+    if (!search_.has_leader()) {
       PruneTheFit();
     } else if (FitBases() && FitForms()) {
       FinishBestForms();
     }
+    best_.candidates = search_.candidates();
+    best_.chosen = search_.chosen();
     return std::move(best_);
   }
 
@@ -120,36 +121,24 @@ class ModelSearch {
     double score;
   };
 
-  double Judge(const std::string& name, const FactorModel& model, const TableLayout& layout,
-               double E) {
-    const double seconds = stopwatch_.Lap();
-    double score = options_.judge(model);
-    // NaN has no order: it ranks below all others.
-    if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
-    best_.candidates.push_back({.name = name,
-                                .num_parameters = layout.num_parameters(model.spec()),
-                                .E = E,
-                                .score = score,
-                                .seconds = seconds});
-    stopwatch_.Lap();
-    return score;
+  void Try(const std::string& name, const FactorModel& model, const TableLayout& layout, double E) {
+    search_.Try(name, model, layout.num_parameters(model.spec()), E);
   }
 
   // The last candidate, if it is the best that keeps to the budget.
   void Choose(const FactorModel& model, const TableLayout& layout, const Weighting& weighting) {
-    ModelCandidate& last = best_.candidates.back();
-    if (last.num_parameters > options_.max_parameters) return;
-    if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
-    if (best_.chosen >= 0) last.has_rings = HasRings(model, objective_.num_threads());
+    if (!search_.LastLeads()) return;
+    Candidate& last = search_.last();
+    if (search_.has_leader()) last.has_rings = HasRings(model, objective_.num_threads());
     if (last.has_rings) return;
-    if (options_.judge_beyond && best_.chosen >= 0) {
+    if (options_.judge_beyond && search_.has_leader()) {
       constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
-      const double gain = last.score - best_.candidates.front().score;
+      const double gain = last.score - search_.first().score;
       last.fails_beyond =
           !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
       if (last.fails_beyond) return;
     }
-    best_.chosen = static_cast<int>(best_.candidates.size()) - 1;
+    search_.TakeLast();
     best_.model = model;
     best_.layout = layout;
     best_.weighting = weighting;
@@ -159,7 +148,7 @@ class ModelSearch {
   // samples tell it.
   double ValueOfSome(const FactorModel& model) {
     const double E = some_.ObjectiveFor(model.spec(), objective_.weighting()).Value(model);
-    return some_of_fit_ > 0 ? E * (best_.candidates.front().E / some_of_fit_) : E;
+    return some_of_fit_ > 0 ? E * (search_.first().E / some_of_fit_) : E;
   }
 
   // All samples would have to be prepared for a stretch, which takes longer than to evaluate them
@@ -181,7 +170,7 @@ class ModelSearch {
     prune.max_parameters = options_.max_parameters;
     // The fit itself has to come down to the budget. Of forms it takes long to see whether G had
     // better be shared, and hardly ever it had.
-    const bool of_fit = best_.chosen < 0;
+    const bool of_fit = !search_.has_leader();
     prune.sharing = of_fit;
     if (!of_fit) prune.stop = options_.stop;
     PrunedModel pruned =
@@ -196,7 +185,7 @@ class ModelSearch {
     const Objective measured = some_.ObjectiveFor(pruned.model.spec(), weighting);
     SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
     ExpandStored(pruned.layout, &pruned.model);
-    Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
+    Try(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
     Choose(pruned.model, pruned.layout, weighting);
   }
 
@@ -205,9 +194,9 @@ class ModelSearch {
   void PruneTheFit() {
     const PrunedModel pruned =
         Prune(objective_, fitted_, {.max_parameters = options_.max_parameters});
-    Judge("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
+    Try("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
     Choose(pruned.model, pruned.layout, objective_.weighting());
-    if (best_.chosen >= 0) return;
+    if (search_.has_leader()) return;
     throw Error("no form of the model keeps to " + std::to_string(options_.max_parameters) +
                 " parameters; its values overflow");
   }
@@ -227,15 +216,14 @@ class ModelSearch {
     // Entries that no measured sample reads are what the prior makes of them, next to others that
     // have moved far away; a picture reads between the two.
     Canonicalize(some_.ObjectiveFor(spec, form.weighting), &form.start);
-    const double score =
-        Judge(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
-    forms_.push_back({std::move(form), score});
+    Try(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
+    forms_.push_back({std::move(form), search_.last().score});
     return true;
   }
 
   // Fits the bases of the forms: the fit itself, stretched, and weighed by channel.
   bool FitBases() {
-    bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
+    bases_ = {{{"", fitted_, objective_.weighting()}, search_.first().score}};
     return FitStretchedBase() && FitBasesByChannel();
   }
 
@@ -247,7 +235,7 @@ class ModelSearch {
     const Objective few = few_with_prior_.ObjectiveFor(spec, objective_.weighting());
     SteppedModel stretch = FitStretches(few, fitted_, options_.stop);
     if (!Fit({"stretched", stretch.model, objective_.weighting()})) return false;
-    double E = best_.candidates.back().E;
+    double E = search_.last().E;
     Fitted best = forms_.back();
     const Objective* judged = &few;
     // The prior is what the fit says where nothing was measured, and would lead the second way back
@@ -258,15 +246,14 @@ class ModelSearch {
     if (anew) {
       if (!Fit({"stretched anew", anew->model, objective_.weighting()})) return false;
       if (forms_.back().score > best.score) {
-        E = best_.candidates.back().E;
+        E = search_.last().E;
         best = forms_.back();
         stretch = *std::move(anew);
         judged = &measured;
       }
     }
     const bool stretched =
-        stretch.model.spec().stretches.any() &&
-        E < (1 - kWorthwhile) * best_.candidates.front().E &&
+        stretch.model.spec().stretches.any() && E < (1 - kWorthwhile) * search_.first().E &&
         !SharesLess(*judged, few_.own().samples().size(), fitted_, stretch, options_.stop);
     if (stretched) bases_.push_back(std::move(best));
     return true;
@@ -326,7 +313,7 @@ class ModelSearch {
     std::ranges::stable_sort(forms_, std::greater(), &Fitted::score);
     for (Fitted& fitted_form : forms_) {
       if (options_.stop()) break;
-      if (fitted_form.score <= best_.candidates[best_.chosen].score + kNotSeen) break;
+      if (fitted_form.score <= search_.leader().score + kNotSeen) break;
       auto& [name, model, weighting] = fitted_form.form;
       if (LeastStored(model.spec()) > options_.max_parameters) continue;
       const TableLayout layout = TableLayout::Full(model.spec());
@@ -340,9 +327,9 @@ class ModelSearch {
         const Objective all = all_.ObjectiveFor(model.spec(), weighting);
         model = ContinueFit(all, model, options_.stop);
         Canonicalize(all, &model);
-        model = TieUnlessSeen(all, model, options_.judge(model), TieRefit::kUntilSettled);
+        model = TieUnlessSeen(all, model, search_.judge()(model), TieRefit::kUntilSettled);
         model = EvenOut(all, all, model);
-        Judge(name + ", finished", model, layout, ValueOf(model));
+        Try(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout, weighting);
       }
     }
@@ -354,9 +341,9 @@ class ModelSearch {
                       const FactorModel& model) const {
     constexpr double kPriceOfLight = 10;
     if (!HasRings(model, objective_.num_threads())) return model;
-    const double score = options_.judge(model);
+    const double score = search_.judge()(model);
     const auto is_harmless = [&](const FactorModel& even) {
-      return options_.judge(even) >= score - kMayLoseForRings;
+      return search_.judge()(even) >= score - kMayLoseForRings;
     };
     const std::optional<MatchedModel> matched = MatchReflectance(
         measured, minimised, model, TableLayout::Full(model.spec()), kPriceOfLight, options_.stop);
@@ -371,16 +358,16 @@ class ModelSearch {
     FactorModel tied = model;
     if (!TieEntriesAtDataEdge(objective, &tied, options_.stop, refit)) return model;
     Canonicalize(objective, &tied);
-    return options_.judge(tied) >= score - kNotSeen ? tied : model;
+    return search_.judge()(tied) >= score - kNotSeen ? tied : model;
   }
 
   const Objective& objective_;
   const FactorModel& fitted_;
   const ModelChoiceOptions& options_;
+  Search search_;
   Objectives all_, some_, few_;
   const UnmeasuredPrior prior_;  // for forms that go on from the fit
   Objectives some_with_prior_, few_with_prior_;
-  Stopwatch stopwatch_;     // since the last candidate
   double beyond_ = 0;       // the data, the score of the fit
   double some_of_fit_ = 0;  // of E of the fit
   std::vector<Fitted> bases_, forms_;
@@ -391,8 +378,6 @@ class ModelSearch {
 
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options) {
-  CheckNotEmpty(options.judge, "judge");
-  if (options.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
   return ModelSearch(objective, fitted, options).Run();
 }
 

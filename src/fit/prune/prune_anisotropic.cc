@@ -40,7 +40,7 @@ FactorModel Rounded(FactorModel model) {
 }
 
 // A model with less of something, to start from; nothing where there is none.
-struct Candidate {
+struct Reduced {
   std::string what;
   std::vector<FactorModel> starts;
 };
@@ -50,7 +50,7 @@ std::string NodesText(const Axis& axis) {
 }
 
 // The model with D or G on another axis.
-Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
+Reduced OnAxis(const FactorModel& model, Factor factor, Axis axis) {
   ModelSpec spec = model.spec();
   const std::string what = std::string(FactorName(factor)) + " on " + NodesText(axis) +
                            " instead of " + NodesText(spec.axis(factor));
@@ -60,7 +60,7 @@ Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
 
 // The model with this share of the phi of D or G: an even number, as most materials look the same
 // turned by 180 degrees.
-std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, double share) {
+std::optional<Reduced> WithFewerPhi(const FactorModel& model, Factor factor, double share) {
   const Axis& axis = model.spec().axis(factor);
   const int fewer = std::max(2 * static_cast<int>(share * axis.phi_nodes / 2), kFewestPhi);
   if (fewer >= axis.phi_nodes) return std::nullopt;
@@ -68,7 +68,7 @@ std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, d
 }
 
 // The model without every sixth theta of D or G, ends apart, and those towards the horizon.
-std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor) {
+std::optional<Reduced> WithFewerTheta(const FactorModel& model, Factor factor) {
   const Axis& all = model.spec().axis(factor);
   const Axis axis = all.WithoutHorizon();
   const int rings = static_cast<int>(axis.theta.size());
@@ -82,35 +82,34 @@ std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor)
   return OnAxis(model, factor, all.reaches_horizon() ? thinned.ToHorizon() : thinned);
 }
 
-Candidate Sharing(const FactorModel& model, const ModelSpec& fewer, const std::string& what) {
+Reduced Sharing(const FactorModel& model, const ModelSpec& fewer, const std::string& what) {
   FactorModel shared(fewer);
   std::ranges::copy(Reduction::BySharing(model.spec(), fewer).Restrict(model.parameters()),
                     shared.parameters().begin());
   return {what, {std::move(shared)}};
 }
 
-std::optional<Candidate> WithOneF(const FactorModel& model) {
+std::optional<Reduced> WithOneF(const FactorModel& model) {
   ModelSpec spec = model.spec();
   if (!spec.F.per_channel || spec.lobes == 0) return std::nullopt;
   spec.F.per_channel = false;
   return Sharing(model, spec, "F shared by the channels");
 }
 
-std::optional<Candidate> WithOneG(const FactorModel& model) {
+std::optional<Reduced> WithOneG(const FactorModel& model) {
   ModelSpec spec = model.spec();
   if (!spec.G.per_lobe || spec.lobes < 2) return std::nullopt;
   spec.G.per_lobe = false;
   return Sharing(model, spec, "G shared by the lobes");
 }
 
-std::optional<Candidate> WithFewerLobes(const FactorModel& model) {
+std::optional<Reduced> WithFewerLobes(const FactorModel& model) {
   const int lobes = model.spec().lobes;
   if (lobes < 2) return std::nullopt;
-  return Candidate{LobesText(lobes - 1) + " instead of " + LobesText(lobes),
-                   WithOneLobeLess(model)};
+  return Reduced{LobesText(lobes - 1) + " instead of " + LobesText(lobes), WithOneLobeLess(model)};
 }
 
-using Reduce = std::function<std::optional<Candidate>(const FactorModel&)>;
+using Reduce = std::function<std::optional<Reduced>(const FactorModel&)>;
 
 // In the order in which they are tried: what leaves most out first.
 std::vector<Reduce> Reductions(const PruneOptions& options) {
@@ -146,7 +145,7 @@ class AnisotropicPruning {
   const PruneState& state() const { return pruning_.state(); }
   bool stopped() const { return options_.stop(); }
 
-  PruneState Fit(const Candidate& candidate) const {
+  PruneState Fit(const Reduced& candidate) const {
     const ModelSpec& spec = candidate.starts.front().spec();
     const FittedModel fitted =
         FitFrom(candidate.starts, Objective(with_prior_, spec), {.E = Wanted()}, options_.stop);
@@ -163,7 +162,7 @@ class AnisotropicPruning {
   void ReduceWhatThereIs() {
     for (const Reduce& reduce : Reductions(options_)) {
       while (!stopped()) {
-        const std::optional<Candidate> candidate = reduce(state().model);
+        const std::optional<Reduced> candidate = reduce(state().model);
         if (!candidate || !Decide(candidate->what, Fit(*candidate))) break;
       }
     }
@@ -175,7 +174,7 @@ class AnisotropicPruning {
       std::optional<std::pair<std::string, PruneState>> best;
       double lowest = kInfinity;
       for (const Reduce& reduce : Reductions(options_)) {
-        const std::optional<Candidate> candidate = reduce(state().model);
+        const std::optional<Reduced> candidate = reduce(state().model);
         if (!candidate) continue;
         PruneState next = Fit(*candidate);
         const int saved = state().num_parameters() - next.num_parameters();
@@ -215,7 +214,7 @@ class AnisotropicPruning {
 };
 
 // An isotropic fit of the same samples.
-Candidate Isotropic(const FactorModel& model, const Objective& with_prior) {
+Reduced Isotropic(const FactorModel& model, const Objective& with_prior) {
   const ModelSpec& before = model.spec();
   ModelSpec spec = ModelSpec::SharedFactors(before.lobes, with_prior.samples().grid);
   spec.D = before.D;
@@ -261,7 +260,7 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& with_pr
     search.ReduceTo(options.max_parameters);
   } else if (pruning.may_rise()) {
     if (options.tables) {
-      const Candidate isotropic = Isotropic(pruning.state().model, with_prior);
+      const Reduced isotropic = Isotropic(pruning.state().model, with_prior);
       if (search.Decide(isotropic.what, search.Fit(isotropic))) {
         return PruneFurther(pruning, options);
       }

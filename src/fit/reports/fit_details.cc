@@ -48,9 +48,9 @@ Json ToJson(const std::vector<StartResult>& starts) {
   return array;
 }
 
-Json ToJson(const std::vector<ModelCandidate>& candidates) {
+Json ToJson(const std::vector<Candidate>& candidates) {
   Json array = Json::array();
-  for (const ModelCandidate& candidate : candidates) {
+  for (const Candidate& candidate : candidates) {
     array.push_back({{"name", candidate.name},
                      {"parameters", candidate.num_parameters},
                      {"objective", candidate.E},
@@ -86,10 +86,10 @@ Json RaisesJson(const SolverSummary& summary) {
 
 Json ToJson(const NodeChoice& choice) {
   Json tried = Json::array();
-  for (const NodeCandidate& candidate : choice.tried) {
+  for (const Candidate& candidate : choice.tried) {
     tried.push_back({{"name", candidate.name},
-                     {"parameters", candidate.spec.num_parameters()},
-                     {"relative_objective", candidate.error},
+                     {"parameters", candidate.num_parameters},
+                     {"relative_objective", candidate.E},
                      {"seconds", candidate.seconds}});
   }
   return {{"chosen", choice.tried[choice.chosen].name},
@@ -116,13 +116,13 @@ std::string StretchLine(const ModelSpec& spec) {
 
 // Lines on the chosen nodes and the other candidates.
 std::string Describe(const NodeChoice& choice) {
-  const NodeCandidate& chosen = choice.tried[choice.chosen];
+  const Candidate& chosen = choice.tried[choice.chosen];
   std::string text = "nodes        chosen by error on held-out directions: " + chosen.name +
-                     " (E held out " + Text(100 * chosen.error, 3) + " % of a black model's";
+                     " (E held out " + Text(100 * chosen.E, 3) + " % of a black model's";
   const char* before = "; others: ";
-  for (const NodeCandidate& candidate : choice.tried) {
+  for (const Candidate& candidate : choice.tried) {
     if (candidate.name == chosen.name) continue;
-    text += before + candidate.name + " " + Text(100 * candidate.error, 3) + " %";
+    text += before + candidate.name + " " + Text(100 * candidate.E, 3) + " %";
     before = "; ";
   }
   return text + ")\n";
@@ -143,7 +143,7 @@ std::string Describe(const FitReport::Finished& finished) {
         " samples, by which candidates were judged; E of these is of what they were fitted to\n";
   }
   for (size_t k = 0; k < finished.candidates.size(); ++k) {
-    const ModelCandidate& candidate = finished.candidates[k];
+    const Candidate& candidate = finished.candidates[k];
     text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
             Text(candidate.score) + " dB, " + std::to_string(candidate.num_parameters) +
             " parameters, E " + Text(candidate.E) +

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "fit/reports/verdict_report.h"
+#include "trilobe/fit/finish/candidate.h"
 #include "trilobe/fit/finish/node_choice.h"
 #include "trilobe/fit/finish/reach.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/fit/prune/model_choice.h"
 #include "trilobe/io/formats/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/seen_error.h"

@@ -28,8 +28,8 @@ BrdfSamples Velvet(double noise) {
 }
 
 // Each has the nodes of the one before among its own.
-std::vector<NodeCandidate> Nested() {
-  std::vector<NodeCandidate> ladder;
+std::vector<FormSpec> Nested() {
+  std::vector<FormSpec> ladder;
   for (const auto& [name, theta, phis] :
        {std::tuple("coarse", std::vector<double>{0, 30, 60}, 3),
         std::tuple("middle", std::vector<double>{0, 15, 30, 45, 60}, 6),
@@ -58,7 +58,7 @@ BrdfSamples OfModel(const ModelSpec& spec) {
   return samples;
 }
 
-NodeChoice Choose(BrdfSamples samples, const std::vector<NodeCandidate>& ladder,
+NodeChoice Choose(BrdfSamples samples, const std::vector<FormSpec>& ladder,
                   const NodeChoiceOptions& options, int threads = 1) {
   return ChooseNodes(Objective(std::move(samples), ladder[0].spec, Weightings().front(), threads),
                      ladder, options);
@@ -87,7 +87,7 @@ TEST(HeldOut, AsksForDirections) {
 TEST(NodeLadder, ClimbsAsFarAsTheDataDo) {
   const auto names_for = [](int thetas, int phis) {
     std::vector<std::string> names;
-    for (const NodeCandidate& rung : NodeLadder(ModelSpec::Anisotropic(3), thetas, phis)) {
+    for (const FormSpec& rung : NodeLadder(ModelSpec::Anisotropic(3), thetas, phis)) {
       CheckSpec(rung.spec);
       names.push_back(rung.name);
     }
@@ -105,13 +105,13 @@ TEST(NodeLadder, ClimbsAsFarAsTheDataDo) {
 }
 
 TEST(ChooseNodes, FinerOnesForDataOfFinerOnes) {
-  const std::vector<NodeCandidate> ladder = Nested();
+  const std::vector<FormSpec> ladder = Nested();
   int wanted = 0;
-  for (const NodeCandidate& maker : ladder) {
+  for (const FormSpec& maker : ladder) {
     const NodeChoice choice = Choose(OfModel(maker.spec), ladder, {.prior = 0});
     EXPECT_EQ(choice.tried[choice.chosen].name, maker.name);
     EXPECT_EQ(choice.chosen, wanted++);
-    EXPECT_LT(choice.tried[choice.chosen].error, 0.01) << maker.name;
+    EXPECT_LT(choice.tried[choice.chosen].E, 0.01) << maker.name;
     EXPECT_GT(choice.held_out, 0);
   }
 }
@@ -122,7 +122,7 @@ TEST(ChooseNodes, IsTheSameOnAnyNumberOfThreads) {
   ASSERT_EQ(one.tried.size(), three.tried.size());
   EXPECT_EQ(one.chosen, three.chosen);
   for (size_t k = 0; k < one.tried.size(); ++k) {
-    EXPECT_EQ(one.tried[k].error, three.tried[k].error) << one.tried[k].name;
+    EXPECT_EQ(one.tried[k].E, three.tried[k].E) << one.tried[k].name;
   }
 }
 

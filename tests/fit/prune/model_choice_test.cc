@@ -1,4 +1,4 @@
-#include "trilobe/fit/prune/model_choice.h"
+#include "fit/prune/model_choice.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -111,18 +111,18 @@ Fit MakeFit() { return {Noisy(TableOf(Material(FByLobe()), kGrid), 0.01), Spec(2
 // Checks that hold for any choice.
 void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_parameters) {
   ASSERT_FALSE(result.candidates.empty());
-  const ModelCandidate& first = result.candidates[0];
+  const Candidate& first = result.candidates[0];
   EXPECT_EQ(first.name, "as fitted");
   const ModelSpec& own = fit.model.spec();
   EXPECT_EQ(first.num_parameters, TableLayout::Full(own).num_parameters(own));
   EXPECT_EQ(first.E, fit.E());
-  for (const ModelCandidate& candidate : result.candidates) {
+  for (const Candidate& candidate : result.candidates) {
     EXPECT_GE(candidate.seconds, 0) << candidate.name;
     EXPECT_GT(candidate.num_parameters, 0) << candidate.name;
   }
   ASSERT_GE(result.chosen, 0);
   ASSERT_LT(result.chosen, static_cast<int>(result.candidates.size()));
-  const ModelCandidate& chosen = result.candidates[result.chosen];
+  const Candidate& chosen = result.candidates[result.chosen];
   EXPECT_LE(chosen.num_parameters, max_parameters);
   CheckLayout(result.layout, result.model.spec());
   EXPECT_EQ(chosen.num_parameters, result.layout.num_parameters(result.model.spec()));
@@ -136,7 +136,7 @@ void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_paramet
 
 // If the judge decides, no stored candidate within the budget has a higher score.
 void ExpectBestOfThoseWithin(const ChosenModel& result, int max_parameters) {
-  for (const ModelCandidate& candidate : result.candidates) {
+  for (const Candidate& candidate : result.candidates) {
     // One that was only fitted is not stored yet: its ends are not tied, its scale is not fixed.
     const bool stored = candidate.name.starts_with("as fitted") ||
                         candidate.name.ends_with(", thinned") ||
@@ -155,7 +155,7 @@ TEST(ModelChoice, NeverExceedsTheBudget) {
     const ChosenModel result = fit.Choose(parameters);
     ExpectConsistent(fit, result, parameters);
     ExpectBestOfThoseWithin(result, parameters);
-    const ModelCandidate& chosen = result.candidates[result.chosen];
+    const Candidate& chosen = result.candidates[result.chosen];
     EXPECT_NEAR(chosen.score, ScoreOf(chosen.E), 1e-9);  // E of stretched ones is summed otherwise
     EXPECT_GE(chosen.E, E);                              // fewer parameters reach no less
     E = 0.98 * chosen.E;                                 // but for where each thinning ends
@@ -217,7 +217,7 @@ TEST(ModelChoice, TheBestGetsALobeMore) {
         }};
     const ChosenModel result = ChooseModel(fit.objective, fit.model, options);
     std::vector<std::string> with_a_lobe_more;
-    for (const ModelCandidate& candidate : result.candidates) {
+    for (const Candidate& candidate : result.candidates) {
       if (candidate.name.ends_with("a lobe more")) with_a_lobe_more.push_back(candidate.name);
     }
     EXPECT_THAT(
@@ -361,7 +361,7 @@ TEST(ModelChoice, FormsGoOnBeyondTheData) {
     };
     const ChosenModel chosen = ChooseModel(fit.objective, fit.model, options);
     ExpectConsistent(fit, chosen, budget);
-    const ModelCandidate& best = chosen.candidates[chosen.chosen];
+    const Candidate& best = chosen.candidates[chosen.chosen];
     EXPECT_NE(best.name, "as fitted");
     EXPECT_LT(ErrorBeyond(chosen.model, measured), 1.5 * of_fit) << budget << ": " << best.name;
   }
@@ -386,7 +386,7 @@ TEST(ModelChoice, TriesWhatTheSpecAllows) {
   const auto names_from = [](const ModelSpec& spec) {
     const Fit fit(RandomTable(kGrid, 1), spec, 2);
     std::vector<std::string> names;
-    for (const ModelCandidate& candidate : fit.Choose(kPlenty).candidates) {
+    for (const Candidate& candidate : fit.Choose(kPlenty).candidates) {
       std::string name = candidate.name;
       if (name.ends_with(", thinned") || name.ends_with(", finished")) continue;
       if (name.ends_with("a lobe more")) name = "a lobe more";
@@ -443,7 +443,7 @@ TEST(ModelChoice, StopAtOnceLeavesTheFittedModel) {
     options.max_parameters = parameters;
     result = ChooseModel(fit.objective, fit.model, options);
     ExpectConsistent(fit, result, parameters);
-    for (const ModelCandidate& candidate : result.candidates) {
+    for (const Candidate& candidate : result.candidates) {
       EXPECT_THAT(candidate.name, StartsWith("as fitted"));
     }
   }

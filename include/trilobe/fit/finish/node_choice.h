@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/finish/candidate.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/node_brdf.h"
@@ -17,19 +18,10 @@
 
 namespace trilobe {
 
-// A choice of nodes of D and G.
-struct NodeCandidate {
-  std::string name;  // "D 12rx36, G 6x24"; r: even steps of the square root of theta
-  ModelSpec spec;
-  double error = 0;  // E on the held-out samples, relative to a black model
-  double seconds = 0;
-};
-
 // `spec` on nodes from coarse to fine, for data with these numbers of theta and phi: D from 8r x 24
 // to 24r x 72, G from 6 x 16 to 10 x 48. D has at most as many phi as the data, G half of that. The
-// second candidate is the default. G has rings towards the horizon if that of `spec` has. `error`
-// and `seconds` are 0.
-std::vector<NodeCandidate> NodeLadder(const ModelSpec& spec, int thetas, int phis);
+// second candidate is the default. G has rings towards the horizon if that of `spec` has.
+std::vector<FormSpec> NodeLadder(const ModelSpec& spec, int thetas, int phis);
 
 // Whether each sample is held out, about one in five. [n] Depends only on the seed and the
 // unordered pair of directions. Throws Error for samples without directions.
@@ -45,11 +37,13 @@ struct NodeChoiceOptions {
 };
 
 struct NodeChoice {
-  FactorModel model;                      // of the chosen nodes, fitted to the other samples
-  std::vector<NodeCandidate> tried = {};  // the first candidates of the ladder
-  int chosen = 0;                         // index of the chosen one
-  int held_out = 0;                       // number of samples
-  double seconds = 0;                     // total
+  FactorModel model;  // of the chosen nodes, fitted to the other samples
+  // The first candidates of the ladder. E is that of the held-out samples, relative to a black
+  // model's, and the score -10 log10 E.
+  std::vector<Candidate> tried = {};
+  int chosen = 0;      // index of the chosen one
+  int held_out = 0;    // number of samples
+  double seconds = 0;  // total
 };
 
 // Tries the candidates in order while the error on held-out pairs of directions falls by at least
@@ -57,7 +51,7 @@ struct NodeChoice {
 // a prior made from them. The result does not depend on the number of threads. If stopped, chooses
 // among those tried. Throws Error for an empty ladder, samples without directions, and too few
 // samples to hold any out.
-NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& ladder,
+NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladder,
                        const NodeChoiceOptions& options);
 
 }  // namespace trilobe

@@ -1,11 +1,10 @@
 #ifndef TRILOBE_FIT_PRUNE_MODEL_CHOICE_H_
 #define TRILOBE_FIT_PRUNE_MODEL_CHOICE_H_
 
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/finish/candidate.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/weighting.h"
@@ -15,34 +14,22 @@ namespace trilobe {
 
 struct ModelChoiceOptions {
   int max_parameters = 822;  // stored values, not counting positions of nodes
-  // Score of a model [dB]. The highest wins, the first of equals.
-  std::function<double(const FactorModel&)> judge;
+  Judge judge;               // the first of equals wins
 
   // Score in all directions [dB], if some were not measured. A form is rejected if it loses more
   // than 3 dB here and more than half of what it gains by `judge`, both against the fitted model.
-  std::function<double(const FactorModel&)> judge_beyond = nullptr;
+  Judge judge_beyond = nullptr;
 
   // Called after each step. Return true to stop with the best form so far within the budget.
   StopCheck stop = {};
-};
-
-// A form that was tried.
-struct ModelCandidate {
-  std::string name;           // "as fitted", "stretched", "stretched, thinned", ...
-  int num_parameters = 0;     // stored
-  double E = 0;               // Objective::Value; approximate for a form that is not stored
-  double score = 0;           // of `judge`; -infinity for NaN
-  bool fails_beyond = false;  // rejected by `judge_beyond`
-  bool has_rings = false;     // rejected, as even light would show rings
-  double seconds = 0;         // to make it from the form that it is derived from
 };
 
 struct ChosenModel {
   FactorModel model;    // with full-size tables, in canonical form except for the order of lobes
   TableLayout layout;   // which parameters are stored
   Weighting weighting;  // of the fit of this form: the objective's, or by channel
-  std::vector<ModelCandidate> candidates;  // in the order tried
-  int chosen = -1;                         // index of the chosen candidate; always set
+  std::vector<Candidate> candidates;  // in the order tried
+  int chosen = -1;                    // index of the chosen candidate; always set
 };
 
 // Chooses the form with the highest score within a budget of parameters (docs/forms.md).
