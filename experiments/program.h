@@ -21,7 +21,7 @@ int ProgramMain(int argc, char** argv, const std::string& usage, int count, cons
   gflags::ParseCommandLineFlags(&argc, &argv, true);
   try {
     const std::span<char*> words(argv + 1, argc - 1);
-    if (argc - 1 != count) throw Error("usage: " + usage);
+    if (argc - 1 != count) throw Error(ErrorKind::kFormat, "usage: " + usage).About("usage");
     return run(words);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: error: %s\n", usage.substr(0, usage.find(' ')).c_str(), error.what());

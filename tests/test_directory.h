@@ -1,7 +1,6 @@
 #ifndef TRILOBE_TESTS_TEST_DIRECTORY_H_
 #define TRILOBE_TESTS_TEST_DIRECTORY_H_
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -15,7 +14,6 @@
 #include <vector>
 
 #include "tests/contents.h"
-#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 
@@ -56,19 +54,6 @@ class TestDirectory {
  private:
   std::string path_;
 };
-
-// The message of the Error that `call` throws; it must be one line.
-template <typename Call>
-std::string ErrorOf(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return "";
-}
 
 }  // namespace trilobe
 

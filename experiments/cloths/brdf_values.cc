@@ -34,7 +34,10 @@ constexpr int kBlock = 4096;  // pairs: an item of work
 std::vector<DirectionPair> ReadPairs(const std::string& path) {
   const std::string bytes = ReadFile(path);
   constexpr size_t kSize = 6 * sizeof(float);
-  if (bytes.size() % kSize != 0) throw Error(path + ": not whole pairs of directions");
+  if (bytes.size() % kSize != 0) {
+    throw ErrorIn(ErrorKind::kFormat, path, "not whole pairs of directions")
+        .About("bytes", bytes.size());
+  }
   std::vector<DirectionPair> pairs(bytes.size() / kSize);
   for (size_t k = 0; k < pairs.size(); ++k) {
     const char* const at = bytes.data() + k * kSize;
@@ -43,7 +46,9 @@ std::vector<DirectionPair> ReadPairs(const std::string& path) {
       pairs[k].wo[axis] = LoadLittleEndian<float>(at + (3 + axis) * sizeof(float));
     }
     if (!(pairs[k].wi[2] > 0 && pairs[k].wo[2] > 0)) {
-      throw Error(path + ": pair " + std::to_string(k) + " is not above the surface");
+      throw ErrorIn(ErrorKind::kRange, path,
+                    "pair " + std::to_string(k) + " is not above the surface")
+          .About("pair", k);
     }
   }
   return pairs;
@@ -58,7 +63,11 @@ int Main(const std::string& name, const std::string& pairs_path, const std::stri
     brdf = SynthSourceOf(name).material.brdf;
     if (FLAGS_interpolated) {
       nodes = PictureDataOf(LoadMeasurement(name)).nodes;
-      if (!nodes) throw Error(name + " has no azimuths; give an anisotropic material");
+      if (!nodes) {
+        throw Error(ErrorKind::kUnsupported,
+                    name + " has no azimuths; give an anisotropic material")
+            .About("azimuths", name);
+      }
       brdf = [&nodes](const DirectionPair& pair) { return (*nodes)(ToSphericalAngles(pair)); };
     }
   } else {

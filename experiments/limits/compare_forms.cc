@@ -40,7 +40,8 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
     try {
       starts.push_back(form->from(start));
     } catch (const Error& error) {
-      throw Error("form " + form->name + ": " + error.what() + "; leave it out of --forms");
+      throw error.WithMessage("form " + form->name + ": " + error.what() +
+                              "; leave it out of --forms");
     }
   }
   const Objective all = SomeOf(problem, options.bands, start.num_parameters());

@@ -100,8 +100,9 @@ int Run(const std::string& of, const std::string& source, const SourceOptions& r
       file.spectral ? file.spectral->wavelengths() : std::vector<double>();
   if (options.bands && (measured.samples.spectra == nullptr ||
                         measured.samples.spectra->wavelengths != wavelengths)) {
-    throw Error(of + ": a model of wavelengths that " + source +
-                " has not; give the model.json beside it");
+    throw ErrorIn(
+        ErrorKind::kMismatch, of,
+        "a model of wavelengths that " + source + " has not; give the model.json beside it");
   }
   const FitOptions fit{.weighting = FindWeighting(FLAGS_weighting),
                        .compare = false,
@@ -126,7 +127,11 @@ int Run(const std::string& of, const std::string& source, const SourceOptions& r
   if (FLAGS_out.empty()) return 0;
   std::ofstream out(FLAGS_out + "/forms.json");
   out << report << '\n';
-  if (!out.flush()) throw Error(FLAGS_out + "/forms.json: cannot be written");
+  if (!out.flush()) {
+    throw Error(ErrorKind::kFile, FLAGS_out + "/forms.json: cannot be written")
+        .At(FLAGS_out + "/forms.json")
+        .About("write");
+  }
   return 0;
 }
 

@@ -70,7 +70,10 @@ TermModel CoupledDiffuse(const TermModel& paper) {
 TermModel Correlated(const TermModel& paper, Site site) {
   constexpr double kLeast = 1e-3, kMost = 1e6;
   TermSpec spec = paper.spec();
-  if (spec.terms.size() < 2) throw Error("a model without lobes has no G to correlate");
+  if (spec.terms.size() < 2) {
+    throw Error(ErrorKind::kUnsupported, "a model without lobes has no G to correlate")
+        .About("lobes", spec.terms.size() - 1);
+  }
   const Axis was = spec.sets[kSetOfG].axis;
   Axis& axis = spec.sets[kSetOfG].axis;
   axis = {.rule = Axis::Rule::kTheta, .size = was.size};
@@ -115,8 +118,14 @@ TermModel DirectionCorrelatedG(const TermModel& paper) {
 // The first lobe, which is the narrowest or brightest, has an F of its own.
 TermModel OwnF(const TermModel& paper) {
   TermSpec spec = paper.spec();
-  if (spec.terms.size() < 3) throw Error("an F of its own wants two lobes or more");
-  if (spec.sets[kSetOfF].count > 1) throw Error("each lobe has an F of its own already");
+  if (spec.terms.size() < 3) {
+    throw Error(ErrorKind::kUnsupported, "an F of its own wants two lobes or more")
+        .About("lobes", spec.terms.size() - 1);
+  }
+  if (spec.sets[kSetOfF].count > 1) {
+    throw Error(ErrorKind::kConflict, "each lobe has an F of its own already")
+        .About("F", spec.sets[kSetOfF].count);
+  }
   spec.sets[kSetOfF].count = 2;
   for (TermRead& read : spec.terms[1].reads) {
     if (read.set == kSetOfF) read.table = 1;

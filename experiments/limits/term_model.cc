@@ -72,40 +72,55 @@ TermSpec TermSpec::Of(const ModelSpec& spec, int channels) {
 void CheckTerms(const TermSpec& spec) {
   const auto check = [](const char* what, size_t is, size_t least, size_t most) {
     if (is >= least && is <= most) return;
-    throw Error("a model of " + std::to_string(is) + " " + what + "; there must be " +
-                std::to_string(least) + " to " + std::to_string(most));
+    throw Error(ErrorKind::kMismatch, "a model of " + std::to_string(is) + " " + what +
+                                          "; there must be " + std::to_string(least) + " to " +
+                                          std::to_string(most))
+        .About(what, is);
   };
   check("channels", spec.channels < 0 ? 0 : spec.channels, 1, kMaxTermChannels);
   check("terms", spec.terms.size(), 1, kMaxTerms);
   check("sets of tables", spec.sets.size(), 0, kMaxTerms);
   for (const TableSet& set : spec.sets) {
     if (set.count < 0 || set.count > kMaxTerms) {
-      throw Error("tables '" + set.name + "': there are " + std::to_string(set.count) +
-                  "; there must be 0 to " + std::to_string(kMaxTerms));
+      throw Error(ErrorKind::kMismatch, "tables '" + set.name + "': there are " +
+                                            std::to_string(set.count) + "; there must be 0 to " +
+                                            std::to_string(kMaxTerms))
+          .About(set.name, set.count);
     }
     CheckAxis(set.axis, set.name.c_str());
-    if (set.axis.polar()) throw Error("tables '" + set.name + "' must not be over azimuths");
+    if (set.axis.polar()) {
+      throw Error(ErrorKind::kUnsupported, "tables '" + set.name + "' must not be over azimuths")
+          .About(set.name);
+    }
   }
   for (const Term& term : spec.terms) {
     if (term.reads.size() > kMaxReads) {
-      throw Error("term '" + term.name + "' reads " + std::to_string(term.reads.size()) +
-                  " tables; it may read " + std::to_string(kMaxReads));
+      throw Error(ErrorKind::kMismatch, "term '" + term.name + "' reads " +
+                                            std::to_string(term.reads.size()) +
+                                            " tables; it may read " + std::to_string(kMaxReads))
+          .About(term.name, term.reads.size());
     }
     int pairs = 0;
     for (const TermRead& read : term.reads) {
       if (read.set < 0 || read.set >= static_cast<int>(spec.sets.size()) || read.table < 0 ||
           read.table >= spec.sets[read.set].count) {
-        throw Error("term '" + term.name + "' reads table " + std::to_string(read.table) +
-                    " of set " + std::to_string(read.set) + ", which there is not");
+        throw Error(ErrorKind::kRange, "term '" + term.name + "' reads table " +
+                                           std::to_string(read.table) + " of set " +
+                                           std::to_string(read.set) + ", which there is not")
+            .About(term.name, read.table);
       }
       if (IsPair(read.site)) ++pairs;
       CheckStretch(read.stretch);
       if (read.stretch.any() && read.site != Site::kHalf) {
-        throw Error("term '" + term.name + "' stretches what is not over theta_h");
+        throw Error(ErrorKind::kUnsupported,
+                    "term '" + term.name + "' stretches what is not over theta_h")
+            .About(term.name, "stretch");
       }
     }
     if (pairs > 1 && term.over_cosines) {
-      throw Error("term '" + term.name + "' reads two pairs; over cosines it may read one");
+      throw Error(ErrorKind::kUnsupported,
+                  "term '" + term.name + "' reads two pairs; over cosines it may read one")
+          .About(term.name, "pairs");
     }
   }
 }

@@ -34,12 +34,14 @@ TermProblem::TermProblem(const Objective& objective, const TermSpec& spec, bool 
       shared_(SharedByChannels(spec)) {
   const BrdfSamples& samples = objective.samples();
   if (bands && samples.spectra == nullptr) {
-    throw Error(samples.source + ": its samples have no spectra");
+    throw ErrorIn(ErrorKind::kMissing, samples.source, "its samples have no spectra")
+        .About("spectra");
   }
   const int channels = bands ? static_cast<int>(samples.spectra->bands()) : kChannels;
   if (spec.channels != channels) {
-    throw Error("a model of " + std::to_string(spec.channels) + " channels, and samples of " +
-                std::to_string(channels));
+    throw Error(ErrorKind::kMismatch, "a model of " + std::to_string(spec.channels) +
+                                          " channels, and samples of " + std::to_string(channels))
+        .About("channels", spec.channels);
   }
   ParallelForShort(samples.size(), num_threads_, [&](int j) {
     Sample& sample = samples_[j];
@@ -62,7 +64,9 @@ TermProblem::TermProblem(const Objective& objective, const TermSpec& spec, bool 
 }
 
 void TermProblem::CheckSpec(const TermModel& model) const {
-  if (!(model.spec() == spec_)) throw Error("a model of other terms than the problem's");
+  if (!(model.spec() == spec_)) {
+    throw Error(ErrorKind::kMismatch, "a model of other terms than the problem's").About("spec");
+  }
 }
 
 double TermProblem::Value(const TermModel& model) const {

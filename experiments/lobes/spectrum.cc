@@ -105,7 +105,9 @@ Json Spectrum(const Objective& objective, const FactorModel& model) {
   for (int k = 0; k < n; ++k) {
     if (at.squared_lengths[k] > 0) moving.push_back(k);
   }
-  if (moving.empty()) throw Error("no number of the model moves any sample; J is 0");
+  if (moving.empty()) {
+    throw Error(ErrorKind::kData, "no number of the model moves any sample; J is 0").About("model");
+  }
   const Eigen::Map<const Eigen::MatrixXd> JtJ(at.H.data(), n, n);
   const Eigen::VectorXd lengths = JtJ.diagonal()(moving).cwiseSqrt();
   const Eigen::VectorXd inverse = lengths.cwiseInverse();

@@ -22,7 +22,10 @@ double Inside(double u) {
 }
 
 std::vector<double> NodesAtEachDegree(const ModelSpec& spec) {
-  if (spec.d_axis.polar()) throw Error("bins of one degree are those of an isotropic model");
+  if (spec.d_axis.polar()) {
+    throw Error(ErrorKind::kUnsupported, "bins of one degree are those of an isotropic model")
+        .About("anisotropic");
+  }
   constexpr int kDegrees = 90;
   std::vector<double> y;
   for (int k = 0; k <= kDegrees; ++k) {
@@ -46,7 +49,8 @@ NdfSampler::NdfSampler(const FactorModel& model, Bins bins)
     all += tables_[m].part;
   }
   if (!(all <= std::numeric_limits<float>::max())) {
-    throw Error("the model's values overflow; its factors are too large");
+    throw Error(ErrorKind::kData, "the model's values overflow; its factors are too large")
+        .About("model", "overflow");
   }
   cosine_part_ = all > 0 ? diffuse / all : 1;
   for (Table& table : tables_) table.part = all > 0 ? table.part / all : 0;

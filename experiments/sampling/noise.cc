@@ -238,7 +238,10 @@ std::vector<int> Numbers(const std::string& text) {
   std::vector<int> numbers;
   for (size_t at = 0; at < text.size(); at = text.find(',', at) + 1) {
     numbers.push_back(std::stoi(text.substr(at)));
-    if (numbers.back() < 2) throw Error("--samples=" + text + ": give numbers of 2 or more");
+    if (numbers.back() < 2) {
+      throw Error(ErrorKind::kRange, "--samples=" + text + ": give numbers of 2 or more")
+          .About("samples", text);
+    }
     if (text.find(',', at) == std::string::npos) break;
   }
   return numbers;
@@ -265,7 +268,9 @@ Environment EnvironmentNamed(const std::string& name) {
 }
 
 int Measure(const std::string& path) {
-  if (FLAGS_size < 4 || FLAGS_reference < 16) throw Error("--size from 4, --reference from 16");
+  if (FLAGS_size < 4 || FLAGS_reference < 16) {
+    throw Error(ErrorKind::kRange, "--size from 4, --reference from 16").About("size, reference");
+  }
   const FactorModel model = ReadModel(path).model;
   const Bsdf<double> bsdf(model);
   std::vector<NdfSampler> ndfs = {NdfSampler(model)};

@@ -232,9 +232,11 @@ Certificate FromJson(const Json& json) {
   certificate.model = FactorModel(FindStiffCase(certificate.name).make().spec);
   const auto x = json.at("model").get<std::vector<double>>();
   if (x.size() != certificate.model.parameters().size()) {
-    throw Error(certificate.name + ": the certified model has " + std::to_string(x.size()) +
-                " numbers, the case " + std::to_string(certificate.model.parameters().size()) +
-                "; run certify again");
+    throw Error(ErrorKind::kMismatch, certificate.name + ": the certified model has " +
+                                          std::to_string(x.size()) + " numbers, the case " +
+                                          std::to_string(certificate.model.parameters().size()) +
+                                          "; run certify again")
+        .About(certificate.name, x.size());
   }
   std::ranges::copy(x, certificate.model.parameters().begin());
   return certificate;
@@ -327,7 +329,7 @@ std::vector<Certificate> ReadCertificates(const std::string& path) {
     const Json file = Json::parse(ReadFile(path));
     for (const Json& json : file.at("certificates")) certificates.push_back(FromJson(json));
   } catch (const Json::exception& error) {
-    throw Error(path + ": no certificates: " + error.what());
+    throw ErrorIn(ErrorKind::kFormat, path, std::string("no certificates: ") + error.what());
   }
   return certificates;
 }
@@ -345,8 +347,10 @@ void CheckCertifies(const Certificate& certificate, const Objective& objective) 
       std::abs(energy - certificate.measured_energy) <= 1e-12 * certificate.measured_energy) {
     return;
   }
-  throw Error("case " + certificate.name +
-              " is not the one that was certified: other samples; run certify again");
+  throw Error(ErrorKind::kMismatch,
+              "case " + certificate.name +
+                  " is not the one that was certified: other samples; run certify again")
+      .About("case", certificate.name);
 }
 
 }  // namespace trilobe

@@ -123,7 +123,9 @@ ReferenceProblem<Real>::ReferenceProblem(const BrdfSamples& samples, const Model
     : spec_(spec), layout_(spec), coverage_(VectorOf<Real>::Zero(spec.num_parameters())) {
   const bool over_azimuths = spec.d_axis.polar() && spec.g_axis.polar();
   if (over_azimuths ? samples.directions.empty() : spec.anisotropic() || !samples.on_grid()) {
-    throw Error(samples.source + ": the reference works on a grid, or with D and G over azimuths");
+    throw ErrorIn(ErrorKind::kUnsupported, samples.source,
+                  "the reference works on a grid, or with D and G over azimuths")
+        .About("grid");
   }
   for (int j = 0; j < samples.size(); ++j) {
     Sample sample =
@@ -217,7 +219,8 @@ Real ReferenceProblem<Real>::Weight(const std::string& name, const Real& rho, co
     const Real chord = log1p(b) / rho;
     return chord * chord;
   }
-  throw Error("the reference has no weighting '" + name + "'");
+  throw Error(ErrorKind::kUnknown, "the reference has no weighting '" + name + "'")
+      .About("weighting", name);
 }
 
 template <typename Real>

@@ -150,7 +150,10 @@ int Main() {
   for (const StiffCase& stiff_case : Chosen(StiffCases(), FLAGS_case, FindStiffCase)) {
     const auto right = std::ranges::find(certificates, stiff_case.name, &Certificate::name);
     if (right == certificates.end()) {
-      throw Error(FLAGS_answers + " has no answer to " + stiff_case.name + "; run certify");
+      throw Error(ErrorKind::kMissing,
+                  FLAGS_answers + " has no answer to " + stiff_case.name + "; run certify")
+          .At(FLAGS_answers)
+          .About("case", stiff_case.name);
     }
     for (const SolverEntry& solver : Chosen(Solvers(), FLAGS_solver, FindSolver)) {
       results.push_back(Run(stiff_case, solver, *right));

@@ -142,7 +142,10 @@ int Main(const std::string& source) {
     last = now;
   };
   const SolverSummary summary = MakeSolver(FLAGS_solver)->Solve(objective, options, &model);
-  if (rises.updates == 0) throw Error(FLAGS_solver + " reports no updates of single elements");
+  if (rises.updates == 0) {
+    throw Error(ErrorKind::kUnsupported, FLAGS_solver + " reports no updates of single elements")
+        .About("solver", FLAGS_solver);
+  }
   std::printf(
       "{\"solver\": \"%s\", \"samples\": %d, \"sweeps\": %d, \"updates\": %d, \"raised\": %d, "
       "\"worst_relative_rise\": %.3g, \"cubics\": %d, \"of_one_root\": %d, \"first_E\": %.17g, "

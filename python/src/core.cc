@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "error_translator.h"
 #include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/core/base/error.h"
@@ -46,7 +47,9 @@ class Rows {
   Rows(const Input<Real>& array, size_t count, const char* name)
       : data_(array.data()), step_(array.shape(0) == 1 ? 0 : kWidth) {
     if (array.shape(1) != kWidth || (array.shape(0) != count && array.shape(0) != 1)) {
-      throw Error(std::string(name) + " does not have as many rows as there are results");
+      throw Error(ErrorKind::kMismatch,
+                  std::string(name) + " does not have as many rows as there are results")
+          .About(name, array.shape(0));
     }
   }
 
@@ -85,7 +88,10 @@ class Directions : Rows<Real, 3> {
 
 template <typename Real>
 void CheckWidth(const Output<Real>& out, size_t width) {
-  if (out.shape(1) != width) throw Error("an array of results has the wrong width");
+  if (out.shape(1) != width) {
+    throw Error(ErrorKind::kMismatch, "an array of results has the wrong width")
+        .About("out", out.shape(1));
+  }
 }
 
 // A model file, and what evaluates it, made when it is first asked for.
@@ -169,7 +175,10 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
 // Evaluates a spectral model: each row of `out` has a value for each wavelength.
 void Spectrum(const Material& material, const Input<double>& wi, const Input<double>& wo,
               const Output<double>& out) {
-  if (!material.file().spectral) throw Error("the model has no wavelengths; eval gives its colour");
+  if (!material.file().spectral) {
+    throw Error(ErrorKind::kUnsupported, "the model has no wavelengths; eval gives its colour")
+        .About("spectral");
+  }
   const SpectralModel& model = *material.file().spectral;
   const size_t count = out.shape(0);
   CheckWidth(out, model.wavelengths().size());
@@ -278,7 +287,8 @@ Factor FactorOf(const std::string& name) {
   for (const Factor factor : kFactors) {
     if (name == FactorName(factor)) return factor;
   }
-  throw Error("there is no factor '" + name + "'; there are D, F and G");
+  throw Error(ErrorKind::kUnknown, "there is no factor '" + name + "'; there are D, F and G")
+      .About("factor", name);
 }
 
 const char* RuleName(Axis::Rule rule) {
@@ -357,8 +367,7 @@ void BindEvaluation(nb::class_<Material>* material) {
 
 NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param): nanobind's
   nb::set_leak_warnings(false);  // objects may live when the interpreter ends
-  nb::exception<Error>(m, "Error", PyExc_ValueError).doc() =
-      "Bad input or an impossible request. Its text is one line: what is wrong, where, what to do.";
+  TranslateErrors();
   nb::class_<Material> material(m, "Material", "A model file, prepared for evaluation.");
   material.def(nb::init<const nb::bytes&, const std::string&>(), nb::arg("text"), nb::arg("source"))
       .def("half_vectors", &HalfVectorsOf)

@@ -110,7 +110,9 @@ std::vector<std::pair<const SolverOption*, OptionValue>> SolverValues(const Solv
       if (option->flag == name) found = option;
     }
     if (found == nullptr) {
-      throw Error("solver " + solver.name + " does not take " + name + "; it takes " + known);
+      throw Error(ErrorKind::kUnsupported,
+                  "solver " + solver.name + " does not take " + name + "; it takes " + known)
+          .About(name);
     }
     const OptionValue like =
         found->unit ? OptionValue(found->unit->default_value) : found->get(SolverOptions());

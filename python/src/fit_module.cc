@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/files/own_mark.h"
+#include "error_translator.h"
 #include "fit/fit_option.h"
 #include "io/formats/source_option.h"
 #include "trilobe/fit/form.h"
@@ -31,7 +32,10 @@ namespace trilobe::python {
 int ThreadsOf(const nb::dict& options) {
   const int threads = OptionOf<int>(options, "threads", "an integer");
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  if (threads < 0) throw Error("threads is negative; give 0 for all cores");
+  if (threads < 0) {
+    throw Error(ErrorKind::kRange, "threads is negative; give 0 for all cores")
+        .About("threads", threads);
+  }
   return threads == 0 ? cores : std::min(threads, cores);
 }
 
@@ -42,8 +46,10 @@ std::vector<double> ByRow(const Weights& weights) {
 BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights) {
   const size_t count = samples.size();
   if (weights.size() != count) {
-    throw Error("there are " + std::to_string(weights.size()) + " weights for " +
-                std::to_string(count) + " valid samples");
+    throw Error(ErrorKind::kMismatch, "there are " + std::to_string(weights.size()) +
+                                          " weights for " + std::to_string(count) +
+                                          " valid samples")
+        .About("weights", weights.size());
   }
   samples.multiplicity = weights;
   return samples;
@@ -78,7 +84,7 @@ std::string FlagTextOf(const std::string& name, const OptionValue& like, const n
   } else {
     text = NumberText(value);
   }
-  if (!text) throw Error(name + " must be " + TypeOf(like));
+  if (!text) throw Error(ErrorKind::kFormat, name + " must be " + TypeOf(like)).About(name);
   return *text;
 }
 
@@ -129,17 +135,7 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
   nb::set_leak_warnings(false);
   FLAGS_minloglevel = google::GLOG_FATAL;  // the reports have what Ceres Solver would log
   gflags::SetVersionString(TRILOBE_VERSION);
-  nb::register_exception_translator(
-      [](const std::exception_ptr& exception, void* /*payload*/) {
-        try {
-          std::rethrow_exception(exception);
-        } catch (const Error& error) {
-          // Imported only when needed, so that the module can be loaded without the package.
-          const nb::object type = nb::module_::import_("trilobe._core").attr("Error");
-          PyErr_SetString(type.ptr(), error.what());
-        }
-      },
-      nullptr);
+  TranslateErrors();
   m.def(
       "source_options", [] { return DefaultsOf(AllSourceOptions()); },
       nb::sig("def source_options() -> dict[str, object]"));

@@ -30,7 +30,7 @@ template <typename T>
 T OptionOf(const nanobind::dict& options, const char* name, const char* must_be) {
   T value{};
   if (!options.contains(name) || !nanobind::try_cast<T>(options[name], value)) {
-    throw Error(std::string(name) + " must be " + must_be);
+    throw Error(ErrorKind::kFormat, std::string(name) + " must be " + must_be).About(name);
   }
   return value;
 }

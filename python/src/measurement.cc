@@ -62,7 +62,8 @@ Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
   const size_t count = rho.shape(0);
   for (const Doubles* const array : {&wi, &wo, &rho}) {
     if (array->shape(0) != count || array->shape(1) != 3) {
-      throw Error("wi, wo and rho must have the same shape (n, 3)");
+      throw Error(ErrorKind::kMismatch, "wi, wo and rho must have the same shape (n, 3)")
+          .About("wi, wo, rho");
     }
   }
   const SourceOptions source_options = SourceOptionsOf(options);
@@ -195,9 +196,10 @@ Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const N
   const nb::gil_scoped_release released;
   if (IsForRenderer(path)) return WriteForRenderer(file, "the model", path, options);
   if (file.model.spec().anisotropic() && !WritableFormat(path).holds_anisotropic) {
-    throw Error(path +
-                ": an anisotropic model is written as .bin (UTIA's directions), .csv, "
-                ".bsdf, .zemax.bsdf, .xml, .glsl, .hlsl, .mtlx or .principled.json");
+    throw ErrorIn(ErrorKind::kUnsupported, path,
+                  "an anisotropic model is written as .bin (UTIA's directions), .csv, "
+                  ".bsdf, .zemax.bsdf, .xml, .glsl, .hlsl, .mtlx or .principled.json")
+        .About("anisotropic");
   }
   const Measurement measurement =
       AsMeasurement(file.model, "the model", options.num_threads, kUtiaGrid);
@@ -257,7 +259,7 @@ NumpyArray<float> RatiosOf(const Completed& self) {
 NumpyArray<double> EvalOf(const Completed& self, const Doubles& wi, const Doubles& wo) {
   const size_t count = wi.shape(0);
   if (wo.shape(0) != count || wi.shape(1) != 3 || wo.shape(1) != 3) {
-    throw Error("wi and wo must both have the shape (n, 3)");
+    throw Error(ErrorKind::kMismatch, "wi and wo must both have the shape (n, 3)").About("wi, wo");
   }
   const double *const i = wi.data(), *const o = wo.data();
   std::vector<double> values;

@@ -58,12 +58,14 @@ class FitObjective {
     FactorModel model(objective_.spec());
     const size_t wanted = model.parameters().size();
     if (x.shape(0) != wanted) {
-      throw Error("x has " + std::to_string(x.shape(0)) + " parameters; the model has " +
-                  std::to_string(wanted));
+      throw Error(ErrorKind::kMismatch, "x has " + std::to_string(x.shape(0)) +
+                                            " parameters; the model has " + std::to_string(wanted))
+          .About("x", x.shape(0));
     }
     for (size_t k = 0; k < wanted; ++k) {
       if (!std::isfinite(x.data()[k])) {
-        throw Error("x[" + std::to_string(k) + "] is not finite");
+        throw Error(ErrorKind::kData, "x[" + std::to_string(k) + "] is not finite")
+            .About("x[" + std::to_string(k) + "]", x.data()[k]);
       }
       model.parameters()[k] = x.data()[k];
     }

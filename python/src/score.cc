@@ -77,7 +77,9 @@ NumpyArray<double> ImageOf(const RenderedImage& image) {
 
 int SizeOf(const nb::dict& options) {
   const int size = OptionOf<int>(options, "size", "an integer");
-  if (size < 1 || size > 2048) throw Error("size must be from 1 to 2048 pixels");
+  if (size < 1 || size > 2048) {
+    throw Error(ErrorKind::kRange, "size must be from 1 to 2048 pixels").About("size", size);
+  }
   return size;
 }
 
@@ -111,7 +113,8 @@ std::tuple<NumpyArray<double>, NumpyArray<double>, double> RenderPair(const nb::
     } else if (pictured.nodes) {
       pair = RenderPicture(*pictured.nodes, material.spherical, Shape::kSphere, appearance).counted;
     } else {
-      throw Error(data->source + ": samples on no grid make no picture; draw the slices");
+      throw ErrorIn(ErrorKind::kUnsupported, data->source,
+                    "samples on no grid make no picture; draw the slices");
     }
   }
   const double exposure = CompareSpheres(pair->measured, pair->fitted).exposure;

@@ -63,7 +63,9 @@ class SharedTexels {
 
  private:
   static std::vector<Cosines> CosinesOf(const Directions& wi, const Directions& wo) {
-    if (wi.shape(0) != wo.shape(0)) throw Error("wi and wo differ in length");
+    if (wi.shape(0) != wo.shape(0)) {
+      throw Error(ErrorKind::kMismatch, "wi and wo differ in length").About("wi, wo");
+    }
     std::vector<Cosines> cosines(wi.shape(0));
     for (size_t j = 0; j < cosines.size(); ++j) {
       cosines[j] = {.i = std::min(wi(j, 2), 1.0), .o = std::min(wo(j, 2), 1.0)};

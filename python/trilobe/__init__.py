@@ -14,7 +14,6 @@ is a BSDF for Mitsuba 3; `trilobe.torch` evaluates in PyTorch.
 import importlib
 from typing import Any
 
-from trilobe._core import Error
 from trilobe._fitting.fit import (
     LobeMatch,
     Solver,
@@ -32,6 +31,7 @@ from trilobe._fitting.objective import Objective
 from trilobe._fitting.result import Record, Result
 from trilobe._fitting.uncertainty import Uncertainty
 from trilobe._model.brdf import Brdf, Sample, load, materials
+from trilobe._model.error import Error
 from trilobe._model.table import Table
 from trilobe._texels.fit import fit_texels
 from trilobe._texels.texels import Texels, load_texels
@@ -74,4 +74,3 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module 'trilobe' has no attribute '{name}'")
 
 
-Error.__module__ = "trilobe"

@@ -31,9 +31,9 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._core import Error
 from trilobe._fitting.measurement import completed, is_model, read
 from trilobe._model.brdf import Brdf, load, model_of
+from trilobe._model.error import Error
 
 try:
     from trilobe._mitsuba.renderer import dr, mi

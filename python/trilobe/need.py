@@ -19,11 +19,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.batch import find_program
 from trilobe._fitting.fit import fit
 from trilobe._fitting.measurement import Measurement, is_model, read
 from trilobe._model.brdf import Brdf, load
+from trilobe._model.error import Error
 from trilobe._model.files import write_text
 from trilobe._need.page import left_text
 from trilobe._need.plan import Tell, plan_of

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
 from trilobe._fitting.result import Result
 from trilobe._fitting.uncertainty import Uncertainty
 from trilobe._model.brdf import CHANNELS, Brdf, model_of
+from trilobe._model.error import Error
 
 _COLORS = ("#c03028", "#2a8a3a", "#2b55b8")
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from trilobe._core import Error
 from trilobe._model.brdf import Brdf
+from trilobe._model.error import Error
 
 try:
     import torch

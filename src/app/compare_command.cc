@@ -73,9 +73,14 @@ PrunedScene PruneScene(const std::string& path) {
   CheckOut(scene, {});
   const InterruptGuard guard;
   SceneRun run = RunScene(std::move(scene), pruned.settings, [](const MaterialFit&) {});
-  if (run.interrupted != 0) throw Error("interrupted; the same command goes on from the cache");
+  if (run.interrupted != 0) {
+    throw Error(ErrorKind::kLimit, "interrupted; the same command goes on from the cache")
+        .About("interrupted");
+  }
   if (!run.failures.empty()) {
-    throw Error("material '" + run.failures[0].name + "': " + run.failures[0].error);
+    throw Error(ErrorKind::kData,
+                "material '" + run.failures[0].name + "': " + run.failures[0].error)
+        .About("material", run.failures[0].name);
   }
   pruned.scene = std::move(run.scene);
   for (MaterialFit& fit : run.fits) {
@@ -101,9 +106,11 @@ void TakeFlags(const Json& flags) {
 PrunedScene ReadPrunedScene(const std::string& folder) {
   const std::string path = folder + "/plan.json";
   try {
-    const Json plan = Json::parse(ReadJsonText(path, path + ": not a plan"));
+    const Json plan = Json::parse(ReadJsonText(path, "not a plan"));
     if (plan.contains("unfinished")) {
-      throw Error(path + ": its run was cut off; make the folder again with `trilobe fit --scene`");
+      throw ErrorIn(ErrorKind::kData, path,
+                    "its run was cut off; make the folder again with `trilobe fit --scene`")
+          .About("unfinished");
     }
     TakeFlags(plan.at("flags"));
     PrunedScene pruned{.scene = ReadScene(plan.at("scene").get<std::string>()),
@@ -118,8 +125,10 @@ PrunedScene ReadPrunedScene(const std::string& folder) {
       const auto found = std::ranges::find_if(
           planned, [&](const Json& entry) { return entry.at("name") == material.name; });
       if (found == planned.end()) {
-        throw Error(path + ": material '" + material.name +
-                    "' is missing; make the folder again with `trilobe fit --scene`");
+        throw ErrorIn(ErrorKind::kMissing, path,
+                      "material '" + material.name +
+                          "' is missing; make the folder again with `trilobe fit --scene`")
+            .About("material", material.name);
       }
       pruned.files.push_back(ReadModel(folder + "/" + material.name + ".json"));
       pruned.num_parameters.push_back(
@@ -131,7 +140,8 @@ PrunedScene ReadPrunedScene(const std::string& folder) {
     pruned.reckoned = plan.at("reused").get<int>() > 0;
     return pruned;
   } catch (const Json::exception& exception) {
-    throw Error(path + ": not a plan of `trilobe fit --scene`: " + exception.what());
+    throw ErrorIn(ErrorKind::kFormat, path,
+                  std::string("not a plan of `trilobe fit --scene`: ") + exception.what());
   }
 }
 
@@ -142,7 +152,10 @@ Comparison Compare(const PrunedScene& pruned) {
   for (size_t k = 0; k < pruned.scene.materials.size(); ++k) {
     const SceneMaterial& material = pruned.scene.materials[k];
     const std::optional<FullFit> full = FitWhole(material, pruned.settings, comparison.threads);
-    if (!full) throw Error("interrupted; the same command goes on from the cache");
+    if (!full) {
+      throw Error(ErrorKind::kLimit, "interrupted; the same command goes on from the cache")
+          .About("interrupted");
+    }
     comparison.full_seconds += full->seconds;
     const std::vector<SceneScore> scores =
         ScoreOnScene(std::vector{full->file.model, pruned.files[k].model}, material,

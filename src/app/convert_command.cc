@@ -51,13 +51,17 @@ void CheckOut(const std::string& source) {
   const std::filesystem::path folder = std::filesystem::path(FLAGS_out).parent_path();
   std::error_code ignored;
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    throw Error("cannot write '" + FLAGS_out + "': there is no folder '" + folder.string() +
-                "'; make it first");
+    throw Error(ErrorKind::kFile, "cannot write '" + FLAGS_out + "': there is no folder '" +
+                                      folder.string() + "'; make it first")
+        .At(FLAGS_out)
+        .About("write");
   }
 }
 
 ConvertOptions OptionsFromFlags(const std::string& source) {
-  if (!(FLAGS_error >= 0 && FLAGS_error <= 1)) throw Error("--error must be from 0 to 1");
+  if (!(FLAGS_error >= 0 && FLAGS_error <= 1)) {
+    throw Error(ErrorKind::kRange, "--error must be from 0 to 1").About("error", FLAGS_error);
+  }
   ConvertOptions options{.error = FLAGS_error,
                          .spectral = IsOn("spectral"),
                          .program = ProgramName(),
@@ -74,15 +78,20 @@ ConvertOptions OptionsFromFlags(const std::string& source) {
 // Throws Error where a flag is given that is for other files than `path`.
 void CheckRendererFlags(const std::string& path) {
   if (!TakesError(path) && !IsDefault("error")) {
-    throw Error("--error goes with an --out that ends in .bsdf");
+    throw Error(ErrorKind::kConflict, "--error goes with an --out that ends in .bsdf")
+        .About("error");
   }
   if (!IsTensorFile(path) && EndingOf(path) != ".csv" && !IsDefault("spectral")) {
-    throw Error("--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf");
+    throw Error(ErrorKind::kConflict,
+                "--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf")
+        .About("spectral");
   }
   for (const char* const flag : {"picture", "probe"}) {
     if (IsStandardMaterial(path) || IsDefault(flag)) continue;
-    throw Error("--" + std::string(flag) +
-                " goes with an --out that ends in .mtlx or .principled.json");
+    throw Error(
+        ErrorKind::kConflict,
+        "--" + std::string(flag) + " goes with an --out that ends in .mtlx or .principled.json")
+        .About(flag);
   }
 }
 
@@ -117,9 +126,12 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
   RefuseForModel(source, of_readers);
   const FactorModel model = ModelOfSource(source).model;
   if (model.spec().anisotropic() && !WritableFormat(out).holds_anisotropic) {
-    throw Error("--out=" + out + ": " + source +
-                " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "
-                "for UTIA's directions, or in .csv");
+    throw Error(
+        ErrorKind::kUnsupported,
+        "--out=" + out + ": " + source +
+            " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "
+            "for UTIA's directions, or in .csv")
+        .About("out", out);
   }
   Measurement measurement = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
   NoteUnread(options, "model", &measurement);
@@ -144,13 +156,16 @@ void WriteSpectra(const BrdfSamples& at, std::span<const double> wavelengths,
 // The spectra of a measurement to --out, a CSV file.
 void WriteMeasuredSpectra(const std::string& source, const SourceOptions& options) {
   if (IsModelFile(source)) {
-    throw Error(source +
-                ": --spectral and an --out in .csv take the directions of --at=MEASUREMENT");
+    throw ErrorIn(ErrorKind::kConflict, source,
+                  "--spectral and an --out in .csv take the directions of --at=MEASUREMENT")
+        .About("spectral");
   }
   const Measurement measurement = LoadMeasurement(source, options);
   PrintNotes(measurement);
   const BrdfSamples& samples = measurement.samples;
-  if (samples.spectra == nullptr) throw Error(NotSpectral(source));
+  if (samples.spectra == nullptr) {
+    throw Error(ErrorKind::kMissing, NotSpectral(source)).At(source).About("spectra");
+  }
   WriteSpectra(samples, samples.spectra->wavelengths, [&](int j, std::span<double> row) {
     std::ranges::copy(samples.SpectrumOf(j), row.begin());
   });
@@ -158,13 +173,19 @@ void WriteMeasuredSpectra(const std::string& source, const SourceOptions& option
 
 // Writes the values of a model beside those of the measurement --at to --out.
 void WriteAt(const std::string& source) {
-  if (!IsModelFile(source)) throw Error(source + ": --at goes with a model");
-  if (EndingOf(FLAGS_out) != ".csv") throw Error("--at goes with an --out that ends in .csv");
+  if (!IsModelFile(source)) {
+    throw ErrorIn(ErrorKind::kConflict, source, "--at goes with a model").About("at");
+  }
+  if (EndingOf(FLAGS_out) != ".csv") {
+    throw Error(ErrorKind::kConflict, "--at goes with an --out that ends in .csv").About("at");
+  }
   Inputs({source, FLAGS_at}).CheckOutput(FLAGS_out);
   SourceOptions options = SourceOptionsFromFlags();
   options.may_lack_values = true;
   const ModelFile file = ModelOfSource(source);
-  if (IsOn("spectral") && !file.spectral) throw Error(NotSpectral(source));
+  if (IsOn("spectral") && !file.spectral) {
+    throw Error(ErrorKind::kMissing, NotSpectral(source)).At(source).About("spectra");
+  }
   const FactorModel& model = file.model;
   Measurement measurement = MeasurementOfSource(FLAGS_at, options);
   PrintNotes(measurement);

@@ -97,13 +97,17 @@ int RunFitOfOne(const std::string& source) {
 // A scene says what is fitted and, by its budgets, what models come out.
 int RunFitOfScene(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
-    throw Error("--scene names the sources in its file; leave out " + arguments[0]);
+    throw Error(ErrorKind::kConflict,
+                "--scene names the sources in its file; leave out " + arguments[0])
+        .About("scene", arguments[0]);
   }
   std::vector<std::string> taken = SceneFlags();
   taken.insert(taken.end(), {"scene", "out", "force"});
   for (const auto& [flag, value] : GivenFlags(FitFlags())) {
     if (std::ranges::find(taken, flag) != taken.end()) continue;
-    throw Error("--" + flag + " is for the fit of one SOURCE, not for --scene");
+    throw Error(ErrorKind::kConflict,
+                "--" + flag + " is for the fit of one SOURCE, not for --scene")
+        .About(flag, value);
   }
   return RunSceneFit(FLAGS_scene);
 }
@@ -111,9 +115,15 @@ int RunFitOfScene(std::span<const std::string> arguments) {
 int RunFit(std::span<const std::string> arguments) {
   { const BlasCall memory_is_there; }  // which is better known before the work
   if (!FLAGS_scene.empty()) return RunFitOfScene(arguments);
-  if (arguments.empty()) throw Error("trilobe fit needs a SOURCE, or --scene=SCENE");
+  if (arguments.empty()) {
+    throw Error(ErrorKind::kMissing, "trilobe fit needs a SOURCE, or --scene=SCENE")
+        .About("SOURCE");
+  }
   for (const char* const flag : {"cache", "nocache"}) {
-    if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " goes with --scene");
+    if (!IsDefault(flag)) {
+      throw Error(ErrorKind::kConflict, "--" + std::string(flag) + " goes with --scene")
+          .About(flag);
+    }
   }
   std::error_code ignored;
   if (arguments.size() == 1 && IsDefault("shard") &&

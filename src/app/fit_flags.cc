@@ -39,9 +39,11 @@ bool IsFile(const std::string& init) {
 FactorModel StartFromFile(const std::string& init) {
   FactorModel model = ModelOfSource(init).model;
   if (ModelIsGiven()) {
-    throw Error(init +
-                " brings its own lobes and tables; leave out --model, --lobes, --stretch, "
-                "--d_nodes, --f_bins, --g_nodes and --nodes");
+    throw Error(ErrorKind::kConflict,
+                init +
+                    " brings its own lobes and tables; leave out --model, --lobes, --stretch, "
+                    "--d_nodes, --f_bins, --g_nodes and --nodes")
+        .About("init", init);
   }
   return model;
 }

@@ -86,14 +86,20 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
       skipped.push_back(path);
     }
   }
-  if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
+  if (error) {
+    throw Error(ErrorKind::kFile, "cannot read the folder '" + folder + "': " + error.message())
+        .At(folder)
+        .About("read", error.message());
+  }
   if (found.empty()) {
     std::string endings;
     for (const MeasurementFormat& format : MeasurementFormats()) {
       const std::string ending = " *" + format.ending;
       if ((endings + " ").find(ending + " ") == std::string::npos) endings += ending;
     }
-    throw Error("'" + folder + "' has no measurement, no file of these:" + endings);
+    throw Error(ErrorKind::kMissing,
+                "'" + folder + "' has no measurement, no file of these:" + endings)
+        .At(folder);
   }
   std::ranges::sort(skipped);
   std::ranges::for_each(skipped, TellSkipped);
@@ -118,12 +124,15 @@ std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
   for (const std::string& source : sources) {
     const std::string name = FitNameOf(source);
     if (name.empty() || name == "." || name == ".." || name == kTableName || name == kPageName) {
-      throw Error("'" + source + "' gives no name for a folder; rename it");
+      throw Error(ErrorKind::kRange, "'" + source + "' gives no name for a folder; rename it")
+          .About("SOURCE", source);
     }
     const auto [other, is_new] = source_of.emplace(name, source);
     if (!is_new) {
-      throw Error("'" + other->second + "' and '" + source + "' would both be fitted into '" +
-                  name + "'; rename one, or fit it by a command of its own");
+      throw Error(ErrorKind::kConflict, "'" + other->second + "' and '" + source +
+                                            "' would both be fitted into '" + name +
+                                            "'; rename one, or fit it by a command of its own")
+          .About("SOURCE", source);
     }
     outcomes.push_back({.name = name, .source = source});
   }
@@ -137,7 +146,9 @@ std::vector<size_t> JobsOfShard(size_t count_of_jobs) {
     std::istringstream text(FLAGS_shard);
     text >> first >> slash >> count;
     if (!text || slash != '/' || text.peek() != EOF || first < 1 || first > count) {
-      throw Error("--shard=" + FLAGS_shard + " is no i/n with i from 1 to n, as 2/8 is");
+      throw Error(ErrorKind::kFormat,
+                  "--shard=" + FLAGS_shard + " is no i/n with i from 1 to n, as 2/8 is")
+          .About("shard", FLAGS_shard);
     }
   }
   std::vector<size_t> jobs;
@@ -177,7 +188,7 @@ namespace {
 bool IsFinished(const FitSettings& settings, const ResultFolder& folder, FitOutcome* outcome) {
   try {
     const std::string path = folder.PathOf("report.json");
-    const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
+    const Json report = Json::parse(ReadJsonText(path, "not a report"));
     if (report.at("interrupted") ||
         report.at("run") != ReadModel(folder.PathOf("model.json")).fit.run) {
       return false;

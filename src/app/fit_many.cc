@@ -91,8 +91,11 @@ std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
   }
   if (names.empty()) {
     const fs::path model = fs::path(folder) / "model.json";
-    throw Error("'" + folder + "' has no folder of a fit, with model.json and report.json in it" +
-                (fs::exists(model) ? "; to look at one model, give '" + model.string() + "'" : ""));
+    throw Error(
+        ErrorKind::kMissing,
+        "'" + folder + "' has no folder of a fit, with model.json and report.json in it" +
+            (fs::exists(model) ? "; to look at one model, give '" + model.string() + "'" : ""))
+        .At(folder);
   }
   std::ranges::sort(names);
   std::vector<FitOutcome> outcomes;
@@ -101,7 +104,7 @@ std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
     FitOutcome& outcome = outcomes.emplace_back(FitOutcome{.name = name, .source = ""});
     const std::string path = (place / "report.json").string();
     try {
-      const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
+      const Json report = Json::parse(ReadJsonText(path, "not a report"));
       outcome.state = FitOutcome::State::kFitted;
       outcome.source = report.at("source");
       TakeReport(report, &outcome);
@@ -120,7 +123,10 @@ std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
 
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
-  if (FLAGS_verbose) throw Error("--verbose is for the fit of one SOURCE; leave it out");
+  if (FLAGS_verbose) {
+    throw Error(ErrorKind::kConflict, "--verbose is for the fit of one SOURCE; leave it out")
+        .About("verbose");
+  }
   const int threads = ThreadsFromFlags();
   settings.side_by_side = threads;
   settings.pair = true;

@@ -82,7 +82,8 @@ void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
   } catch (const Error& error) {
     const std::string path = SaveElsewhere(file, *folder);
     if (path.empty()) throw;
-    throw Error(std::string(error.what()) + "; the model is saved as '" + path + "' instead");
+    throw error.WithMessage(std::string(error.what()) + "; the model is saved as '" + path +
+                            "' instead");
   }
 }
 
@@ -355,7 +356,7 @@ std::string WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFold
   try {
     return WriteFiles(run, settings, folder);
   } catch (const Error& error) {
-    throw Error(error.what() + WhereModelIs(run->file, *folder));
+    throw error.WithMessage(error.what() + WhereModelIs(run->file, *folder));
   }
 }
 

@@ -108,7 +108,10 @@ std::string FlagHelp(const std::string& flag) {
 }
 
 int ThreadsFromFlags() {
-  if (FLAGS_threads < 0) throw Error("--threads is negative; give 0 for all cores");
+  if (FLAGS_threads < 0) {
+    throw Error(ErrorKind::kRange, "--threads is negative; give 0 for all cores")
+        .About("threads", FLAGS_threads);
+  }
   // Cores that this process may use.
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (FLAGS_threads == 0) return cores;
@@ -161,7 +164,10 @@ std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {
 
 void RefuseForModel(const std::string& path, const std::vector<std::string>& flags) {
   for (const auto& [flag, value] : GivenFlags(flags)) {
-    throw Error("--" + flag + " is for measurements, and " + path + " is a model; leave it out");
+    throw Error(ErrorKind::kConflict,
+                "--" + flag + " is for measurements, and " + path + " is a model; leave it out")
+        .At(path)
+        .About(flag, value);
   }
 }
 

@@ -10,8 +10,10 @@ namespace {
 int RunInfo(std::span<const std::string> arguments) {
   if (IsModelFile(arguments[0])) {
     if (!FLAGS_out.empty()) {
-      throw Error("--out is for a picture of what was measured; " + arguments[0] +
-                  " is a model: draw it with trilobe plot");
+      throw Error(ErrorKind::kConflict, "--out is for a picture of what was measured; " +
+                                            arguments[0] + " is a model: draw it with trilobe plot")
+          .At(arguments[0])
+          .About("out", FLAGS_out);
     }
     RefuseForModel(arguments[0], MeasurementFlags());
     DescribeModel(arguments[0]);

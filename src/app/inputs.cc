@@ -21,13 +21,14 @@ bool IsModelFile(const std::string& path) {
 }
 
 ModelFile ModelOfSource(const std::string& path) {
-  if (!IsMaterial(path)) CheckMayBeJson(BeginningOf(path), path + ": not a model file");
+  if (!IsMaterial(path)) CheckMayBeJson(BeginningOf(path), path, "not a model file");
   return LoadModel(path);
 }
 
 void RefuseMaterial(const std::string& source) {
   if (!IsMaterial(source)) return;
-  throw Error(source + ": this is a model; give the file of a measurement, or synth:NAME");
+  throw ErrorIn(ErrorKind::kUnsupported, source,
+                "this is a model; give the file of a measurement, or synth:NAME");
 }
 
 Measurement MeasurementOfSource(const std::string& source, const SourceOptions& options) {
@@ -37,7 +38,9 @@ Measurement MeasurementOfSource(const std::string& source, const SourceOptions& 
 
 std::string RequiredOut(const std::string& command, const std::string& what) {
   if (FLAGS_out.empty()) {
-    throw Error("trilobe " + command + " needs --out=" + what + ", to know where to write");
+    throw Error(ErrorKind::kMissing,
+                "trilobe " + command + " needs --out=" + what + ", to know where to write")
+        .About("out");
   }
   return FLAGS_out;
 }
@@ -45,7 +48,9 @@ std::string RequiredOut(const std::string& command, const std::string& what) {
 void CheckPictureOut() {
   const std::string ending = EndingOf(FLAGS_out);
   if (ending.empty() || ending == ".png") return;
-  throw Error("--out=" + FLAGS_out + ": the picture is a PNG; end the name in .png");
+  throw Error(ErrorKind::kUnsupported,
+              "--out=" + FLAGS_out + ": the picture is a PNG; end the name in .png")
+      .About("out", FLAGS_out);
 }
 
 std::string RequiredMeasurementOut(const std::string& command) {
@@ -53,11 +58,12 @@ std::string RequiredMeasurementOut(const std::string& command) {
   try {
     WritableFormat(out);
   } catch (const Error& error) {
-    throw Error("--out=" + std::string(error.what()) +
-                (command == "convert" ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, "
-                                        ".mtlx or .principled.json for "
-                                        "renderers and optical design"
-                                      : ""));
+    throw error.WithMessage("--out=" + std::string(error.what()) +
+                            (command == "convert"
+                                 ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, "
+                                   ".mtlx or .principled.json for "
+                                   "renderers and optical design"
+                                 : ""));
   }
   return out;
 }

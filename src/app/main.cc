@@ -138,7 +138,8 @@ CommandLine ReadCommandLine(int argc, const char* const* argv) {
     } else if (++k < argc) {
       line.flags.push_back({std::move(name), argv[k]});
     } else {
-      throw Error("--" + name + " lacks its value; give --" + name + "=VALUE");
+      throw Error(ErrorKind::kMissing, "--" + name + " lacks its value; give --" + name + "=VALUE")
+          .About(name);
     }
   }
   for (++k; k < argc; ++k) line.words.emplace_back(argv[k]);
@@ -152,7 +153,8 @@ void SetFlags(const CommandLine& line, const char* program) {
     if (!known) continue;
     if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
       const CommandLineFlagInfo info = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
-      throw Error("--" + name + "=" + value + ": give " + ValuesOf(info.type));
+      throw Error(ErrorKind::kFormat, "--" + name + "=" + value + ": give " + ValuesOf(info.type))
+          .About(name, value);
     }
     words.push_back("--" + name + "=" + value);
   }
@@ -175,7 +177,8 @@ const Command& FindCommand(const std::string& name) {
   for (const Command& command : Commands()) {
     if (command.name == name) return command;
   }
-  throw Error("unknown command '" + name + "'; known: " + KnownCommands());
+  throw Error(ErrorKind::kUnknown, "unknown command '" + name + "'; known: " + KnownCommands())
+      .About("command", name);
 }
 
 void PrintHelp() {
@@ -226,9 +229,11 @@ void CheckFlags(const CommandLine& line, const Command& command) {
       continue;
     }
     const std::string meant = flag.known ? "" : MeantFlag(flag.name, command);
-    throw Error("trilobe " + command.name + " has no flag --" + flag.name +
-                (meant.empty() ? "; see" : "; did you mean --" + meant + "? See") +
-                " `trilobe help " + command.name + "`");
+    throw Error(ErrorKind::kUnknown,
+                "trilobe " + command.name + " has no flag --" + flag.name +
+                    (meant.empty() ? "; see" : "; did you mean --" + meant + "? See") +
+                    " `trilobe help " + command.name + "`")
+        .About("flag", flag.name);
   }
 }
 
@@ -242,7 +247,9 @@ void TakeOtherNames(CommandLine* line) {
     const auto given = std::ranges::find(line->flags, other, &CommandLine::Flag::name);
     if (given == line->flags.end()) continue;
     if (std::ranges::find(line->flags, name, &CommandLine::Flag::name) != line->flags.end()) {
-      throw Error("--" + other + " is another name of --" + name + "; give one of them");
+      throw Error(ErrorKind::kConflict,
+                  "--" + other + " is another name of --" + name + "; give one of them")
+          .About(name);
     }
     given->name = name;
   }
@@ -265,9 +272,12 @@ int Run(const CommandLine& line) {
   const std::vector<std::string> arguments(line.words.begin() + 1, line.words.end());
   const int count = static_cast<int>(arguments.size());
   if (count < command.min_arguments || count > command.max_arguments) {
-    throw Error("trilobe " + command.name + " takes " +
-                (command.arguments.empty() ? "no arguments" : command.arguments) + ", but got " +
-                std::to_string(count) + "; see `trilobe help " + command.name + "`");
+    throw Error(ErrorKind::kRange,
+                "trilobe " + command.name + " takes " +
+                    (command.arguments.empty() ? "no arguments" : command.arguments) +
+                    ", but got " + std::to_string(count) + "; see `trilobe help " + command.name +
+                    "`")
+        .About("arguments", count);
   }
   return command.run(arguments);
 }
@@ -275,7 +285,7 @@ int Run(const CommandLine& line) {
 // Printed text may still be in a buffer, and its disk full.
 void FlushOutput() {
   const bool written = std::cout.flush() && std::fflush(stdout) == 0;
-  if (!written) throw Error("cannot write to standard output");
+  if (!written) throw Error(ErrorKind::kFile, "cannot write to standard output").About("write");
 }
 
 // A descriptor of a standard stream that is closed would be that of the next file that is opened,
@@ -304,7 +314,9 @@ int Main(int argc, char** argv) {
     return 0;
   }
   if (line.help) return Help(line);
-  if (line.words.empty()) throw Error("no command; known: " + KnownCommands());
+  if (line.words.empty()) {
+    throw Error(ErrorKind::kMissing, "no command; known: " + KnownCommands()).About("command");
+  }
   return Run(line);
 }
 

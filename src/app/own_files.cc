@@ -70,8 +70,11 @@ bool CannotSay(const std::string& path) {
 }
 
 [[noreturn]] void Refuse(const std::string& path, const std::string& why) {
-  throw Error("'" + path + "' exists, and " + why +
-              "; move it away, give another --out, or overwrite it by --force");
+  throw Error(ErrorKind::kFile,
+              "'" + path + "' exists, and " + why +
+                  "; move it away, give another --out, or overwrite it by --force")
+      .At(path)
+      .About("replace");
 }
 
 }  // namespace

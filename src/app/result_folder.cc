@@ -35,8 +35,10 @@ void Inputs::CheckNotRead(const std::string& path) const {
   if (stat(path.c_str(), &status) != 0) return;
   const auto input = name_of_.find({status.st_dev, status.st_ino});
   if (input == name_of_.end()) return;
-  throw Error("writing '" + path + "' would destroy '" + input->second +
-              "', which this command reads; give another --out");
+  throw Error(ErrorKind::kFile, "writing '" + path + "' would destroy '" + input->second +
+                                    "', which this command reads; give another --out")
+      .At(path)
+      .About("replace", input->second);
 }
 
 void Inputs::CheckOutput(const std::string& path, const MayReplace& may_replace) const {
@@ -56,7 +58,10 @@ ResultFolder::ResultFolder(std::string path, std::vector<std::string> names, con
     : path_(std::move(path)), names_(std::move(names)), run_(RandomDigits()) {
   std::error_code ignored;
   if (fs::exists(path_, ignored) && !fs::is_directory(path_, ignored)) {
-    throw Error("cannot write into '" + path_ + "': it is not a folder; give another --out");
+    throw Error(ErrorKind::kFile,
+                "cannot write into '" + path_ + "': it is not a folder; give another --out")
+        .At(path_)
+        .About("write");
   }
   for (const std::string& name : names_) {
     inputs.CheckNotRead(PathOf(name));
@@ -117,12 +122,18 @@ void ResultFolder::RemoveEarlierRun() const {
     if (std::ranges::find(kept_, name) != kept_.end()) {
       fs::rename(PathOf(name), PathOf(PreviousName(name)), error);
       if (!error) continue;
-      throw Error("cannot rename '" + PathOf(name) + "' of an earlier run: " + error.message());
+      throw Error(ErrorKind::kFile,
+                  "cannot rename '" + PathOf(name) + "' of an earlier run: " + error.message())
+          .At(PathOf(name))
+          .About("rename", error.message());
     }
     if (std::ranges::find(ahead_, name) != ahead_.end()) continue;
     fs::remove(PathOf(name), error);
     if (error) {
-      throw Error("cannot remove '" + PathOf(name) + "' of an earlier run: " + error.message());
+      throw Error(ErrorKind::kFile,
+                  "cannot remove '" + PathOf(name) + "' of an earlier run: " + error.message())
+          .At(PathOf(name))
+          .About("remove", error.message());
     }
   }
 }

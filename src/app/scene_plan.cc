@@ -164,7 +164,7 @@ nlohmann::json EarlierPlan(const std::string& folder) {
   const std::string path = folder + "/" + kPlanName;
   CheckMayReplace(path);
   try {
-    const std::string text = ReadJsonText(path, path + ": not a plan");
+    const std::string text = ReadJsonText(path, "not a plan");
     if (SaysOwn(text)) return nlohmann::json::parse(text);
   } catch (const Error&) {
     return nullptr;  // none

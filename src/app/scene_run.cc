@@ -27,7 +27,10 @@ namespace {
 
 FitCache CacheFromFlags() {
   if (FLAGS_nocache) {
-    if (!FLAGS_cache.empty()) throw Error("--nocache and --cache contradict; leave one out");
+    if (!FLAGS_cache.empty()) {
+      throw Error(ErrorKind::kConflict, "--nocache and --cache contradict; leave one out")
+          .About("nocache");
+    }
     return {};
   }
   if (!FLAGS_cache.empty()) return FitCache(FLAGS_cache);

@@ -29,9 +29,11 @@ void CheckThatSolverTakesFlags(const SolverEntry& solver) {
     if (IsDefault(flag) || std::ranges::find(taken, flag) != taken.end()) continue;
     std::string others;
     for (const std::string& other : taken) others += (others.empty() ? "--" : ", --") + other;
-    throw Error("solver " + solver.name + " does not take --" + flag + "; " +
-                (others.empty() ? "it has no flags of its own" : "it takes " + others) +
-                "; see `trilobe solvers`");
+    throw Error(ErrorKind::kUnsupported,
+                "solver " + solver.name + " does not take --" + flag + "; " +
+                    (others.empty() ? "it has no flags of its own" : "it takes " + others) +
+                    "; see `trilobe solvers`")
+        .About(flag);
   }
 }
 

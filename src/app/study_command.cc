@@ -49,7 +49,7 @@ std::optional<double> NumberOr(const Json& value) {
 // Reads what a fit left.
 void ReadRun(const ResultFolder& folder, StudyRun* run) {
   const std::string path = folder.PathOf("report.json");
-  const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
+  const Json report = Json::parse(ReadJsonText(path, "not a report"));
   run->stop_reason = report.at("stop_reason");
   const Json& seconds = report.at("seconds");
   double before = 0;  // the solver begins

@@ -64,13 +64,23 @@ std::vector<Sweep> SweepsFromFlags() {
     const std::string flag = part.substr(0, equals);
     const std::string values = equals == std::string::npos ? "" : part.substr(equals + 1);
     if (std::ranges::find(known, flag) == known.end()) {
-      throw Error("--set=" + part + ": '" + flag +
-                  "' is no flag of fit that can be varied; write FLAG=a,b,c");
+      throw Error(ErrorKind::kUnknown,
+                  "--set=" + part + ": '" + flag +
+                      "' is no flag of fit that can be varied; write FLAG=a,b,c")
+          .About("set", part);
     }
-    if (values.empty()) throw Error("--set=" + part + ": give values, as in FLAG=a,b,c");
-    if (!IsDefault(flag)) throw Error("--" + flag + " and --set=" + part + ": give one of them");
+    if (values.empty()) {
+      throw Error(ErrorKind::kFormat, "--set=" + part + ": give values, as in FLAG=a,b,c")
+          .About("set", part);
+    }
+    if (!IsDefault(flag)) {
+      throw Error(ErrorKind::kConflict, "--" + flag + " and --set=" + part + ": give one of them")
+          .About(flag);
+    }
     if (std::ranges::find(sweeps, flag, &Sweep::flag) != sweeps.end()) {
-      throw Error("--set varies --" + flag + " twice; give all values at once, as in FLAG=a,b,c");
+      throw Error(ErrorKind::kConflict,
+                  "--set varies --" + flag + " twice; give all values at once, as in FLAG=a,b,c")
+          .About(flag);
     }
     sweeps.push_back({flag, Split(values, values.find('|') == std::string::npos ? ',' : '|')});
   }
@@ -87,8 +97,9 @@ void CheckThatSomeSolverReads(const std::vector<Sweep>& sweeps,
       return TakesFlag(*solver, flag);
     };
     if (std::ranges::any_of(solvers, takes)) continue;
-    throw Error("--set varies --" + flag +
-                ", which none of --solvers reads; see `trilobe solvers`");
+    throw Error(ErrorKind::kUnsupported,
+                "--set varies --" + flag + ", which none of --solvers reads; see `trilobe solvers`")
+        .About(flag);
   }
 }
 
@@ -129,7 +140,8 @@ std::string Label(const std::string& flag, const std::string& value) {
 
 void SetFlag(const std::string& flag, const std::string& value) {
   if (gflags::SetCommandLineOption(flag.c_str(), value.c_str()).empty()) {
-    throw Error("--set: --" + flag + "=" + value + " is no value of this flag");
+    throw Error(ErrorKind::kFormat, "--set: --" + flag + "=" + value + " is no value of this flag")
+        .About(flag, value);
   }
 }
 
@@ -215,14 +227,17 @@ class FolderNames {
 void CheckSource(const std::string& source) {
   std::error_code ignored;
   if (IsSynthetic(source) || fs::exists(source, ignored)) return;
-  throw Error("cannot read '" + source + "': no such file");
+  throw Error(ErrorKind::kFile, "cannot read '" + source + "': no such file")
+      .At(source)
+      .About("read");
 }
 
 // Throws Error for a run that there is already.
 void CheckNew(const StudyJob& job, std::set<std::string>* folders) {
   if (!folders->insert(job.run.folder).second) {
-    throw Error("'" + job.run.problem + "' by '" + job.run.method +
-                "' is asked for twice; name each solver and value once");
+    throw Error(ErrorKind::kConflict, "'" + job.run.problem + "' by '" + job.run.method +
+                                          "' is asked for twice; name each solver and value once")
+        .About("problem", job.run.problem);
   }
 }
 
@@ -244,11 +259,16 @@ std::string LimitsText() {
 }
 
 std::vector<StudyJob> StudyJobsFromFlags(std::span<const std::string> arguments) {
-  if (FLAGS_runs < 1 || FLAGS_runs > 10000) throw Error("--runs must be from 1 to 10000");
+  if (FLAGS_runs < 1 || FLAGS_runs > 10000) {
+    throw Error(ErrorKind::kRange, "--runs must be from 1 to 10000").About("runs", FLAGS_runs);
+  }
   const std::vector<Sweep> sweeps = SweepsFromFlags();
   std::vector<const SolverEntry*> solvers;
   for (const std::string& name : Split(FLAGS_solvers, ',')) solvers.push_back(&FindSolver(name));
-  if (solvers.empty()) throw Error("--solvers is empty; name some, as auto,awls,lm");
+  if (solvers.empty()) {
+    throw Error(ErrorKind::kMissing, "--solvers is empty; name some, as auto,awls,lm")
+        .About("solvers");
+  }
   CheckThatSomeSolverReads(sweeps, solvers);
   // Random starts are the same for all values of --init.
   const bool varies_start = std::ranges::find(sweeps, "init", &Sweep::flag) != sweeps.end();

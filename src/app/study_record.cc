@@ -39,7 +39,7 @@ std::string SettingsOf(const StudyJob& job) {
 // Whether the folder has a result of this very run, whatever it was called.
 bool HasResultOf(const StudyJob& job, const std::string& report_path) {
   try {
-    const Json report = Json::parse(ReadJsonText(report_path, report_path + ": not a report"));
+    const Json report = Json::parse(ReadJsonText(report_path, "not a report"));
     return report.at("key") == FitKey(job.settings, Source(job.outcome.source));
   } catch (const std::exception&) {
     return false;
@@ -57,16 +57,21 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
   if (!Exists(path)) {
     if (!has_tables) return;
     throw Error(
+        ErrorKind::kFile,
         "'" + out + "' has tables without " + kStudyRecordName +
-        ", which says of what runs they are; give another --out, or overwrite it by --force");
+            ", which says of what runs they are; give another --out, or overwrite it by --force")
+        .At(out)
+        .About("replace");
   }
   std::map<std::string, const StudyJob*> job_of;
   for (const StudyJob& job : jobs) job_of[job.run.folder] = &job;
   std::string command;
   bool is_other = false;
   try {
-    const Json record = Json::parse(ReadJsonText(path, path + ": not a record of a study"));
-    if (record.at("format") != kStudyFormat) throw Error(path + ": not a record of a study");
+    const Json record = Json::parse(ReadJsonText(path, "not a record of a study"));
+    if (record.at("format") != kStudyFormat) {
+      throw ErrorIn(ErrorKind::kFormat, path, "not a record of a study");
+    }
     command = record.at("command");
     for (const Json& run : record.at("runs")) {
       const std::string folder = run.at("folder");
@@ -80,11 +85,14 @@ void CheckSameStudy(const std::string& out, std::span<const StudyJob> jobs) {
                               !HasResultOf(*job->second, report));
     }
   } catch (const Json::exception&) {
-    throw Error(path + ": not a record of a study; give another --out");
+    throw ErrorIn(ErrorKind::kFormat, path, "not a record of a study; give another --out");
   }
   if (!is_other) return;
-  throw Error("'" + out + "' has another study, whose results this one would replace: " +
-              Printable(command) + "; give another --out, or overwrite it by --force");
+  throw Error(ErrorKind::kFile,
+              "'" + out + "' has another study, whose results this one would replace: " +
+                  Printable(command) + "; give another --out, or overwrite it by --force")
+      .At(out)
+      .About("replace");
 }
 
 std::string StudyRecord(std::span<const StudyJob> jobs, const std::string& command) {

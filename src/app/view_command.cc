@@ -35,16 +35,20 @@ void Write(const std::string& path, const std::string& page, const std::string& 
 int ViewFolder(const std::string& folder) {
   for (const std::string& flag : WithSourceFlags({"trace", "probe"})) {
     if (!IsDefault(flag)) {
-      throw Error("--" + flag + " is for the page of one model, not of a folder");
+      throw Error(ErrorKind::kConflict,
+                  "--" + flag + " is for the page of one model, not of a folder")
+          .About(flag);
     }
   }
   const std::string path = FLAGS_out.empty() ? folder + "/index.html" : FLAGS_out;
   std::error_code ignored;
   const std::filesystem::path parent = std::filesystem::absolute(path).parent_path();
   if (!path.ends_with(".html") || !std::filesystem::equivalent(parent, folder, ignored)) {
-    throw Error("--out=" + path +
-                ": the page of a folder is a .html file in it, as it shows the "
-                "pictures that lie there");
+    throw Error(ErrorKind::kUnsupported,
+                "--out=" + path +
+                    ": the page of a folder is a .html file in it, as it shows the "
+                    "pictures that lie there")
+        .About("out", path);
   }
   const std::vector<FitOutcome> fits = ReadFitsIn(folder);
   Inputs().CheckOutput(path);
@@ -60,7 +64,10 @@ int RunView(std::span<const std::string> arguments) {
     return ViewFolder(arguments[0]);
   }
   const std::string path = RequiredOut("view", "FILE.html");
-  if (!path.ends_with(".html")) throw Error("--out=" + path + ": end the name in .html");
+  if (!path.ends_with(".html")) {
+    throw Error(ErrorKind::kUnsupported, "--out=" + path + ": end the name in .html")
+        .About("out", path);
+  }
   std::vector<std::string> read(arguments.begin(), arguments.end());
   for (const std::string& file : {FLAGS_trace, FLAGS_probe}) read.push_back(file);
   Inputs(read).CheckOutput(path);

@@ -36,8 +36,20 @@ std::optional<ModelSpec> OnFinestNodes(const ModelSpec& form, const HemisphereGr
 
 }  // namespace
 
+void CheckMayChooseForms(const FitOptions& options) {
+  if (options.start_model) {
+    throw Error(ErrorKind::kConflict, "--model=auto has starts of its own; leave one out")
+        .About("start_model");
+  }
+  if (options.form.nodes_by_held_out || options.form.d_nodes || options.form.g_nodes) {
+    throw Error(ErrorKind::kConflict,
+                "--model=auto chooses the nodes; leave out --nodes, --d_nodes and --g_nodes")
+        .About("nodes");
+  }
+}
+
 std::vector<FormSpec> AnisotropicForms(const ModelSpec& by_default, const HemisphereGrid& data,
-                                        int max_parameters) {
+                                       int max_parameters) {
   std::vector<FormSpec> forms;
   const auto add = [&](const std::string& name, const std::optional<ModelSpec>& spec) {
     if (!spec) return;
@@ -52,7 +64,9 @@ std::vector<FormSpec> AnisotropicForms(const ModelSpec& by_default, const Hemisp
     add("as fitted", finest);
   }
   if (forms.empty()) {
-    throw Error("no anisotropic form keeps to " + std::to_string(max_parameters) + " parameters");
+    throw Error(ErrorKind::kRange,
+                "no anisotropic form keeps to " + std::to_string(max_parameters) + " parameters")
+        .About("max_parameters", max_parameters);
   }
   if (by_default.lobes > 0 && by_default.lobes < kMaxLobes) {
     ModelSpec more = by_default;

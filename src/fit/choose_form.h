@@ -6,6 +6,7 @@
 
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/fit/finish/candidate.h"
+#include "trilobe/fit/fit_options.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/model_spec.h"
@@ -14,12 +15,15 @@
 
 namespace trilobe {
 
+// Throws Error where the options give a start or nodes, which each of these forms has of its own.
+void CheckMayChooseForms(const FitOptions& options);
+
 // Forms of at most max_parameters parameters, first `by_default` or the nearest to it. Each has D
 // and G on the finest nodes within the budget, so one more lobe or tables by channel mean fewer
 // nodes. Nodes are not finer than the data resolve and, unless the budget exceeds the size of
 // `by_default`, not finer than its own. Throws Error if no nodes are few enough.
 std::vector<FormSpec> AnisotropicForms(const ModelSpec& by_default, const HemisphereGrid& data,
-                                        int max_parameters);
+                                       int max_parameters);
 
 // Lead that another form than the default needs [dB]; smaller leads are within the accuracy of the
 // judges (docs/decisions/forms.md).

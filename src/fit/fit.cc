@@ -34,8 +34,9 @@ namespace {
 double PriorWeight(const Measurement& measurement, const FitOptions& options) {
   if (measurement.table) {
     if (options.prior) {
-      throw Error(measurement.source + ": --prior is for scattered samples, and a " +
-                  measurement.kind + " is a table");
+      throw ErrorIn(ErrorKind::kUnsupported, measurement.source,
+                    "--prior is for scattered samples, and a " + measurement.kind + " is a table")
+          .About("prior");
     }
     return 0;
   }
@@ -105,13 +106,14 @@ class Fitting {
                                           : SpecFor(measurement_, options_.form, samples->size());
     if (options_.choose_form) MakeReadyToChoose(samples->size(), &spec);
     const std::vector<FormSpec> nodes = options_.start_model
-                                             ? std::vector<FormSpec>()
-                                             : NodesToTry(measurement_, options_.form, spec);
+                                            ? std::vector<FormSpec>()
+                                            : NodesToTry(measurement_, options_.form, spec);
     PriorWeight(measurement_, options_);  // its error
     if (options_.bands && measurement_.bands > 0 && measurement_.samples.spectra == nullptr) {
-      throw Error(measurement_.source +
-                  ": --spectral fits wavelengths, and three --bands were read as r, g and b; leave "
-                  "out --bands, or give four or more");
+      throw ErrorIn(ErrorKind::kConflict, measurement_.source,
+                    "--spectral fits wavelengths, and three --bands were read as r, g and b; leave "
+                    "out --bands, or give four or more")
+          .About("bands");
     }
     if (options_.bands) CheckBands(measurement_.source, measurement_.samples, spec);
     FitResult fit{
@@ -144,10 +146,7 @@ class Fitting {
         options_.max_parameters.value_or(table_ != nullptr ? kOfTables : spec->num_parameters());
     if (!options_.select) pictured_ = PictureDataOf(measurement_);
     if (spec->anisotropic()) {
-      if (options_.start_model) throw Error("--model=auto has starts of its own; leave one out");
-      if (options_.form.nodes_by_held_out || options_.form.d_nodes || options_.form.g_nodes) {
-        throw Error("--model=auto chooses the nodes; leave out --nodes, --d_nodes and --g_nodes");
-      }
+      CheckMayChooseForms(options_);
       forms_ = AnisotropicForms(
           *spec, pictured_.nodes ? pictured_.nodes->table().grid : HemisphereGrid(), budget);
       *spec = forms_.front().spec;
@@ -227,9 +226,10 @@ class Fitting {
       if (all.rho[found - all.bins.begin()] == some.rho[j]) kept.push_back(j);
     }
     if (kept.empty()) {
-      throw Error(measurement_.source +
-                  ": no sample that is fitted has a spectrum with its value; leave out what "
-                  "changes values");
+      throw ErrorIn(ErrorKind::kData, measurement_.source,
+                    "no sample that is fitted has a spectrum with its value; leave out what "
+                    "changes values")
+          .About("spectra");
     }
     return {Selected(some, kept), data.spec(), data.weighting(), data.num_threads()};
   }

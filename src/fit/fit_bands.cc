@@ -156,12 +156,15 @@ void SetScale(const Objective& objective, SpectralModel* model) {
 
 void CheckBands(const std::string& source, const BrdfSamples& samples, const ModelSpec& spec) {
   if (samples.spectra == nullptr) {
-    throw Error(source +
-                ": its samples have no spectra, so there is no model of wavelengths; leave out "
-                "--spectral");
+    throw ErrorIn(ErrorKind::kMissing, source,
+                  "its samples have no spectra, so there is no model of wavelengths; leave out "
+                  "--spectral")
+        .About("spectra");
   }
   if (spec.D.per_channel || spec.G.per_channel) {
-    throw Error("--spectral takes a form whose channels share D and G, as the default does");
+    throw Error(ErrorKind::kConflict,
+                "--spectral takes a form whose channels share D and G, as the default does")
+        .About("spectral", "D, G");
   }
 }
 

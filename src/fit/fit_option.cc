@@ -108,8 +108,10 @@ void SetStretch(std::string_view text, FitOptions* options) {
   }
   const int lobes = LobesOf(options->form);
   if (exponents.size() != 2 && static_cast<int>(exponents.size()) != 2 * lobes) {
-    throw Error("--stretch=" + std::string(text) + " has " + std::to_string(exponents.size() / 2) +
-                " pairs for " + std::to_string(lobes) + " lobes; give one, or one a lobe");
+    throw Error(ErrorKind::kMismatch, "--stretch=" + std::string(text) + " has " +
+                                          std::to_string(exponents.size() / 2) + " pairs for " +
+                                          std::to_string(lobes) + " lobes; give one, or one a lobe")
+        .About("stretch", text);
   }
   std::vector<Stretch> of_lobes;
   for (size_t k = 0; k < exponents.size(); k += 2) {
@@ -287,29 +289,43 @@ void CheckFitOptions(const FitOptions& options) {
   }
   for (const char* const nodes : {"d_nodes", "g_nodes"}) {
     if (options.form.nodes_by_held_out && IsGiven(nodes, options)) {
-      throw Error("--nodes=held_out chooses the nodes; leave out --" + std::string(nodes));
+      throw Error(ErrorKind::kConflict,
+                  "--nodes=held_out chooses the nodes; leave out --" + std::string(nodes))
+          .About(nodes);
     }
   }
   for (const FitOption& option : AllFitOptions()) {
     if (options.raw && option.follows_solver && IsGiven(option.name, options)) FailWithRaw(option);
   }
   if (!options.choose_form) {
-    if (options.max_parameters) throw Error("--max_parameters goes with --model=auto");
+    if (options.max_parameters) {
+      throw Error(ErrorKind::kConflict, "--max_parameters goes with --model=auto")
+          .About("max_parameters", *options.max_parameters);
+    }
     return;
   }
-  if (options.raw) throw Error("--raw stores what the solver found; leave out --model=auto");
+  if (options.raw) {
+    throw Error(ErrorKind::kConflict, "--raw stores what the solver found; leave out --model=auto")
+        .About("model", "auto");
+  }
   if (IsGiven("smoothness", options) && options.smoothness > 0) {
     throw Error(
-        "--smoothness is for a form that is given: tables that --model=auto chooses are thinned");
+        ErrorKind::kConflict,
+        "--smoothness is for a form that is given: tables that --model=auto chooses are thinned")
+        .About("smoothness", options.smoothness);
   }
   if (options.bands) {
     throw Error(
-        "--spectral takes a form that is given: --model=auto may choose a D for each channel");
+        ErrorKind::kConflict,
+        "--spectral takes a form that is given: --model=auto may choose a D for each channel")
+        .About("spectral", "auto");
   }
 }
 
 void FailWithRaw(const FitOption& option) {
-  throw Error("--raw stores what the solver found; leave out --" + option.name);
+  throw Error(ErrorKind::kConflict,
+              "--raw stores what the solver found; leave out --" + option.name)
+      .About(option.name);
 }
 
 bool IsGiven(std::string_view name, const FitOptions& options) {

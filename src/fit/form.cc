@@ -33,7 +33,10 @@ void CheckNothingAnisotropic(const FormOptions& options) {
                             : options.g_nodes           ? "g_nodes"
                             : options.nodes_by_held_out ? "nodes"
                                                         : nullptr;
-  if (given != nullptr) throw Error("--" + std::string(given) + " is for anisotropic models");
+  if (given != nullptr) {
+    throw Error(ErrorKind::kUnsupported, "--" + std::string(given) + " is for anisotropic models")
+        .About(given);
+  }
 }
 
 // For directions on a grid of few theta, `g_nodes` is the number of nodes of G, else 0.
@@ -41,7 +44,8 @@ ModelSpec IsotropicSpec(const FormOptions& options, const MerlGrid& grid, int g_
   CheckNothingAnisotropic(options);
   const bool independent = options.kind == Kind::kIndependent;
   if (independent && LobesOf(options) != 1) {
-    throw Error("--model=independent has one lobe; leave out --lobes");
+    throw Error(ErrorKind::kConflict, "--model=independent has one lobe; leave out --lobes")
+        .About("lobes", LobesOf(options));
   }
   ModelSpec spec = independent ? ModelSpec::IndependentG(grid)
                                : ModelSpec::SharedFactors(LobesOf(options), grid);
@@ -84,9 +88,12 @@ ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, in
   CheckForm(options);
   if (measurement.table) {
     if (options.kind == Kind::kAnisotropic) {
-      throw Error(measurement.source + ": a " + measurement.kind +
-                  " knows no azimuths; an anisotropic model needs scattered samples with several "
-                  "phi_i");
+      throw ErrorIn(
+          ErrorKind::kUnsupported, measurement.source,
+          "a " + measurement.kind +
+              " knows no azimuths; an anisotropic model needs scattered samples with several "
+              "phi_i")
+          .About("anisotropic");
     }
     return IsotropicSpec(options, measurement.table->grid);
   }
@@ -96,9 +103,10 @@ ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, in
       measurement.anisotropic ? GridOf(measurement) : std::nullopt;
   if (anisotropic) {
     if (options.stretches.any()) {
-      throw Error(measurement.source +
-                  ": --stretch is for isotropic models, and this is to have an " +
-                  "anisotropic one; --model=isotropic fits the other");
+      throw ErrorIn(ErrorKind::kConflict, measurement.source,
+                    "--stretch is for isotropic models, and this is to have an "
+                    "anisotropic one; --model=isotropic fits the other")
+          .About("stretch");
     }
     return AnisotropicSpec(options, grid.value_or(HemisphereGrid()), measurement.max_theta);
   }
@@ -122,8 +130,10 @@ std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptio
                                   const ModelSpec& spec) {
   if (!options.nodes_by_held_out) return {};
   if (!spec.anisotropic()) {
-    throw Error(measurement.source + ": --nodes=held_out is for anisotropic models, and this is " +
-                "to have an isotropic one");
+    throw ErrorIn(ErrorKind::kConflict, measurement.source,
+                  "--nodes=held_out is for anisotropic models, and this is "
+                  "to have an isotropic one")
+        .About("nodes");
   }
   const HemisphereGrid data = GridOf(measurement).value_or(HemisphereGrid());
   return NodeLadder(spec, data.thetas, data.phis);

@@ -72,9 +72,10 @@ HeldOutPart::HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_thr
     (IsHeldOut(measured.Angles(j), seed) ? held : kept_).push_back(j);
   }
   if (held.empty() || kept_.empty()) {
-    throw Error(
-        measured.source +
-        ": too few directions to hold out some of them, as --model=auto and `trilobe forms` do");
+    throw ErrorIn(
+        ErrorKind::kData, measured.source,
+        "too few directions to hold out some of them, as --model=auto and `trilobe forms` do")
+        .About("directions", measured.size());
   }
   held_ = Selected(measured, held);
 }

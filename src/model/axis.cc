@@ -42,9 +42,11 @@ void CheckEntries(const Axis& axis) {
       static_cast<int64_t>(axis.theta.size()) * axis.phi_nodes == axis.size) {
     return;
   }
-  throw Error("an axis of " + std::to_string(axis.size) + " entries cannot have " +
-              std::to_string(axis.theta.size()) + " x " + std::to_string(axis.phi_nodes) +
-              " nodes");
+  throw Error(ErrorKind::kMismatch, "an axis of " + std::to_string(axis.size) +
+                                        " entries cannot have " +
+                                        std::to_string(axis.theta.size()) + " x " +
+                                        std::to_string(axis.phi_nodes) + " nodes")
+      .About("axis", axis.size);
 }
 
 void CheckEntry(const Axis& axis, int entry) {
@@ -54,7 +56,8 @@ void CheckEntry(const Axis& axis, int entry) {
 
 Stencil PolarStencil(const Axis& axis, double theta, double phi) {
   if (!(std::isfinite(theta) && std::isfinite(phi))) {
-    throw Error("theta or phi of a direction is not a finite number");
+    throw Error(ErrorKind::kRange, "theta or phi of a direction is not a finite number")
+        .About("theta, phi");
   }
   const Between a = LocateTheta(axis.theta, RadiansToDegrees(theta));
   const Between b = Snapped(OnCircle(phi, axis.phi_nodes));
@@ -76,9 +79,11 @@ Stencil PolarStencil(const Axis& axis, double theta, double phi) {
 Axis Axis::Polar(std::vector<double> theta_degrees, int phi_nodes) {
   constexpr auto kFit = [](size_t nodes) { return nodes >= 1 && nodes <= kMaxTableSize; };
   if (phi_nodes < 1 || !kFit(phi_nodes) || !kFit(theta_degrees.size())) {
-    throw Error("an axis of " + std::to_string(theta_degrees.size()) + " theta by " +
-                std::to_string(phi_nodes) + " phi; it needs from 1 to " +
-                std::to_string(kMaxTableSize) + " of each");
+    throw Error(ErrorKind::kRange, "an axis of " + std::to_string(theta_degrees.size()) +
+                                       " theta by " + std::to_string(phi_nodes) +
+                                       " phi; it needs from 1 to " + std::to_string(kMaxTableSize) +
+                                       " of each")
+        .About("axis");
   }
   const int size = static_cast<int>(theta_degrees.size()) * phi_nodes;
   return {.rule = Rule::kPolar,
@@ -169,26 +174,29 @@ Axis::Cell Axis::CellOf(int entry) const {
 }
 
 void CheckAxis(const Axis& axis, const char* name) {
-  const auto fail = [&](const std::string& problem) {
-    throw Error(std::string(name) + " tables " + problem);
+  const auto fail = [&](ErrorKind kind, double value, const std::string& problem) {
+    throw Error(kind, std::string(name) + " tables " + problem).About(name, value);
   };
   const int max_size = axis.polar() ? kMaxTableSize : kMaxBins;
   if (axis.size < 4 || axis.size > max_size) {
-    fail("have " + std::to_string(axis.size) + " entries; they need 4 to " +
-         std::to_string(max_size));
+    fail(ErrorKind::kRange, axis.size,
+         "have " + std::to_string(axis.size) + " entries; they need 4 to " +
+             std::to_string(max_size));
   }
   if (!axis.polar()) return;
   const std::vector<double>& theta = axis.theta;
   if (theta.empty() || axis.phi_nodes < 1 ||
       static_cast<int64_t>(theta.size()) * axis.phi_nodes != axis.size) {
-    fail("of " + std::to_string(axis.size) + " entries cannot have " +
-         std::to_string(theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes");
+    fail(ErrorKind::kMismatch, axis.size,
+         "of " + std::to_string(axis.size) + " entries cannot have " +
+             std::to_string(theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes");
   }
   // Written so that it fails for NaN.
   const auto not_below = [](double a, double b) { return !(a < b); };
   const bool ascend = std::ranges::adjacent_find(theta, not_below) == theta.end();
   if (!(ascend && theta.front() >= 0 && theta.back() < 90)) {
-    fail("have nodes theta that do not ascend from 0 degrees or more to below 90");
+    fail(ErrorKind::kRange, theta.back(),
+         "have nodes theta that do not ascend from 0 degrees or more to below 90");
   }
 }
 

@@ -24,9 +24,11 @@ constexpr size_t kBlock = 32;
 
 void CheckAsMany(size_t wi, size_t others, size_t results) {
   if (wi == results && others == results) return;
-  throw Error("there are " + std::to_string(wi) + " wi, " + std::to_string(others) +
-              " of what goes with them, and room for " + std::to_string(results) +
-              " results; give as many of each");
+  throw Error(ErrorKind::kMismatch, "there are " + std::to_string(wi) + " wi, " +
+                                        std::to_string(others) +
+                                        " of what goes with them, and room for " +
+                                        std::to_string(results) + " results; give as many of each")
+      .About("wi", wi);
 }
 
 // Whether a direction is finite and above the surface.

@@ -65,14 +65,17 @@ void CheckParameters(const FactorModel& model) {
   std::ostringstream message;
   message << "parameter " << bad - x.begin() << " of the model is " << *bad
           << "; all must be finite and 0 or more";
-  throw Error(message.str());
+  throw Error(ErrorKind::kData, message.str())
+      .About("parameter " + std::to_string(bad - x.begin()), *bad);
 }
 
 void CheckCoverage(std::span<const double> coverage, const FactorModel& model) {
   if (coverage.size() == model.parameters().size()) return;
-  throw Error("a coverage of " + std::to_string(coverage.size()) + " entries, but the model has " +
-              std::to_string(model.parameters().size()) +
-              "; take that of an objective of its spec");
+  throw Error(ErrorKind::kMismatch, "a coverage of " + std::to_string(coverage.size()) +
+                                        " entries, but the model has " +
+                                        std::to_string(model.parameters().size()) +
+                                        "; take that of an objective of its spec")
+      .About("coverage", coverage.size());
 }
 
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin) {

@@ -39,7 +39,9 @@ HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<flo
       values_(values) {
   const int rows = static_cast<int>(y_.size()), rings = static_cast<int>(theta_i_.size());
   if (num_s_ < 5 || num_s_ > kMaxS || num_s_ % 4 != 1) {
-    throw Error("a table needs 5 to 129 nodes of s, one more than a multiple of 4");
+    throw Error(ErrorKind::kRange,
+                "a table needs 5 to 129 nodes of s, one more than a multiple of 4")
+        .About("s", num_s_);
   }
   int begin = 0;
   for (int bin = 0; bin <= kThetaBins; ++bin) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/files/json_value.h"
@@ -18,8 +19,10 @@ class JsonNode {
   JsonNode(const JsonValue& json, std::string key, const std::string& source)
       : json_(json), key_(std::move(key)), source_(source) {}
 
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(source_ + ": key '" + key_ + "' " + problem);
+  // Throws Error about the path.
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind = ErrorKind::kRange,
+                         std::string_view value = "") const {
+    throw ErrorIn(kind, source_, "key '" + key_ + "' " + problem).About(key_, value);
   }
 
   bool has(const std::string& key) const { return json_.Find(key) != nullptr; }
@@ -29,7 +32,7 @@ class JsonNode {
   JsonNode operator[](const std::string& key) const {
     const std::string path = key_.empty() ? key : key_ + "." + key;
     const JsonValue* const found = json_.Find(key);
-    if (found == nullptr) JsonNode(json_, path, source_).Fail("is missing");
+    if (found == nullptr) JsonNode(json_, path, source_).Fail("is missing", ErrorKind::kMissing);
     return {*found, path, source_};
   }
 
@@ -51,27 +54,33 @@ class JsonNode {
 
   void CheckArraySize(size_t size) const {
     if (ArraySize() != size) {
-      Fail("must have " + std::to_string(size) + " entries, not " + std::to_string(ArraySize()));
+      Fail("must have " + std::to_string(size) + " entries, not " + std::to_string(ArraySize()),
+           ErrorKind::kMismatch, std::to_string(ArraySize()));
     }
   }
 
   double Number() const {
     CheckType(Type::kNumber, "a number");
-    if (json_.number() < 0) Fail("must be finite and >= 0, not " + NumberText());
+    if (json_.number() < 0) {
+      Fail("must be finite and >= 0, not " + NumberText(), ErrorKind::kRange, NumberText());
+    }
     return json_.number();
   }
 
   // An exponent, from -2 to 2.
   double Exponent() const {
     CheckType(Type::kNumber, "a number");
-    if (!(std::abs(json_.number()) <= 2)) Fail("must be from -2 to 2, not " + NumberText());
+    if (!(std::abs(json_.number()) <= 2)) {
+      Fail("must be from -2 to 2, not " + NumberText(), ErrorKind::kRange, NumberText());
+    }
     return json_.number();
   }
 
   int Integer(int max) const {
     const double value = Number();
     if (value != std::floor(value) || value > max) {
-      Fail("must be an integer from 0 to " + std::to_string(max) + ", not " + NumberText());
+      Fail("must be an integer from 0 to " + std::to_string(max) + ", not " + NumberText(),
+           ErrorKind::kRange, NumberText());
     }
     return static_cast<int>(value);
   }
@@ -95,7 +104,10 @@ class JsonNode {
   using Type = JsonValue::Type;
 
   void CheckType(Type type, const std::string& expected) const {
-    if (json_.type() != type) Fail("must be " + expected + ", not " + json_.type_name());
+    if (json_.type() != type) {
+      Fail("must be " + expected + ", not " + json_.type_name(), ErrorKind::kFormat,
+           json_.type_name());
+    }
   }
   std::string NumberText() const { return std::string(json_.number_text()); }
 

@@ -29,21 +29,27 @@ std::string_view MaterialText(std::string_view path) {
     if (file.name == name + std::string(kEnding) && file.name != kAbout) return file.text;
   }
   const std::vector<std::string_view> known = MaterialNames();
-  if (known.empty()) throw Error(std::string(path) + ": this was built without materials");
+  if (known.empty()) {
+    throw Error(ErrorKind::kMissing, std::string(path) + ": this was built without materials")
+        .At(path)
+        .About("materials");
+  }
   const std::string_view nearest = NearestName(name, known);
   const bool meant = 3 * EditDistance(name, nearest) <= name.size();
-  throw Error(std::string(path) + ": there is no material of this name; " +
-              (meant
-                   ? "did you mean '" + std::string(kMaterialPrefix) + std::string(nearest) + "'? "
-                   : "") +
-              "`trilobe materials` lists all");
+  throw Error(ErrorKind::kUnknown, std::string(path) + ": there is no material of this name; " +
+                                       (meant ? "did you mean '" + std::string(kMaterialPrefix) +
+                                                    std::string(nearest) + "'? "
+                                              : "") +
+                                       "`trilobe materials` lists all")
+      .At(path)
+      .About("material", name);
 }
 
 ModelFile LoadModel(const std::string& path) {
   if (path.starts_with("synth:")) {
-    throw Error(path +
-                ": this is a measurement; a model is a model.json that `trilobe fit` "
-                "wrote, or material:NAME");
+    throw ErrorIn(ErrorKind::kUnsupported, path,
+                  "this is a measurement; a model is a model.json that `trilobe fit` "
+                  "wrote, or material:NAME");
   }
   if (IsMaterial(path)) return ParseModel(MaterialText(path), path);
   return ReadModel(path);

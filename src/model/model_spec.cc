@@ -84,35 +84,45 @@ void CheckSameSpec(const ModelSpec& is, const ModelSpec& wanted) {
            std::to_string(spec.stretches.any() ? spec.stretches.distinct().size() : 0) + " ways" +
            tables;
   };
-  throw Error("a model of another spec: it has " + text(is) + "; wanted are " + text(wanted) +
-              ", shared alike");
+  throw Error(ErrorKind::kMismatch, "a model of another spec: it has " + text(is) +
+                                        "; wanted are " + text(wanted) + ", shared alike")
+      .About("spec");
 }
 
 void CheckSpec(const ModelSpec& spec) {
   if (spec.lobes < 0 || spec.lobes > kMaxLobes) {
-    throw Error("lobes is " + std::to_string(spec.lobes) + "; it must be from 0 to " +
-                std::to_string(kMaxLobes));
+    throw Error(ErrorKind::kRange, "lobes is " + std::to_string(spec.lobes) +
+                                       "; it must be from 0 to " + std::to_string(kMaxLobes))
+        .About("lobes", spec.lobes);
   }
   for (const Factor factor : kFactors) CheckAxis(spec.axis(factor), FactorName(factor));
   if (spec.f_axis.rule != Axis::Rule::kTheta) {
-    throw Error("F tables must be over bins of theta_d");
+    throw Error(ErrorKind::kRange, "F tables must be over bins of theta_d").About("f_axis");
   }
   for (const Axis::Rule rule : {spec.d_axis.rule, spec.g_axis.rule}) {
-    if (rule == Axis::Rule::kTheta) throw Error("only F tables may be over bins of theta_d");
+    if (rule == Axis::Rule::kTheta) {
+      throw Error(ErrorKind::kRange, "only F tables may be over bins of theta_d")
+          .About("d_axis, g_axis", "theta_d");
+    }
   }
   if (spec.d_axis.rule == Axis::Rule::kSpline || spec.g_axis.rule == Axis::Rule::kRootTheta) {
-    throw Error("a D table cannot be a spline, nor a G table one over the root of theta_h");
+    throw Error(ErrorKind::kRange,
+                "a D table cannot be a spline, nor a G table one over the root of theta_h")
+        .About("d_axis, g_axis");
   }
   spec.stretches.Check(spec.lobes);
   if (spec.stretches.any()) CheckIsotropic(spec, "a stretch of highlights");
   if (spec.stretches.several() && !spec.D.per_lobe) {
-    throw Error("lobes that share D must be stretched alike");
+    throw Error(ErrorKind::kConflict, "lobes that share D must be stretched alike")
+        .About("stretches");
   }
 }
 
 void CheckIsotropic(const ModelSpec& spec, const char* wants) {
   if (!spec.anisotropic()) return;
-  throw Error(std::string(wants) + " wants an isotropic model, and this one is anisotropic");
+  throw Error(ErrorKind::kUnsupported,
+              std::string(wants) + " wants an isotropic model, and this one is anisotropic")
+      .About("anisotropic", wants);
 }
 
 }  // namespace trilobe

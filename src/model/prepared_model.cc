@@ -333,9 +333,11 @@ template <typename Real>
 void PreparedModel<Real>::Values(std::span<const Vector> wi, std::span<const Vector> wo,
                                  std::span<Colour> values) const {
   if (wi.size() != values.size() || wo.size() != values.size()) {
-    throw Error("there are " + std::to_string(wi.size()) + " wi, " + std::to_string(wo.size()) +
-                " wo and room for " + std::to_string(values.size()) +
-                " values; give as many of each");
+    throw Error(ErrorKind::kMismatch, "there are " + std::to_string(wi.size()) + " wi, " +
+                                          std::to_string(wo.size()) + " wo and room for " +
+                                          std::to_string(values.size()) +
+                                          " values; give as many of each")
+        .About("wi", wi.size());
   }
   Evaluate(values.size(), wi.data(), wo.data(), values.data());
 }

@@ -65,7 +65,7 @@ void ReadStretch(const Node& root, ModelSpec* spec) {
                          " leave it out");
   }
   const Node node = root["stretch"];
-  if (spec->anisotropic()) node.Fail("is for isotropic models");
+  if (spec->anisotropic()) node.Fail("is for isotropic models", ErrorKind::kConflict);
   const auto read = [](const Node& table) {
     table.CheckObject();
     return Stretch{.along = table["along"].Exponent(), .across = table["across"].Exponent()};
@@ -74,13 +74,13 @@ void ReadStretch(const Node& root, ModelSpec* spec) {
     spec->stretches = read(node);
     return;
   }
-  if (!node.is_array()) node.Fail("must be an object, or a list of one a lobe");
+  if (!node.is_array()) node.Fail("must be an object, or a list of one a lobe", ErrorKind::kFormat);
   node.CheckArraySize(spec->lobes);
   std::vector<Stretch> of_lobes;
   for (int m = 0; m < spec->lobes; ++m) of_lobes.push_back(read(node[m]));
   spec->stretches = Stretches(of_lobes);
   if (spec->stretches.several() && !spec->D.per_lobe) {
-    node.Fail("must be one for all lobes, since they share D");
+    node.Fail("must be one for all lobes, since they share D", ErrorKind::kConflict);
   }
 }
 
@@ -117,9 +117,11 @@ Axis ReadPolarAxis(const Node& root, Factor factor) {
   }
   axis.size = static_cast<int>(axis.theta.size()) * axis.phi_nodes;
   if (axis.size < 4 || axis.size > kMaxTableSize) {
-    throw Error(root.source() + ": key 'theta_nodes' and 'phi_nodes' make tables " +
-                FactorName(factor) + " of " + std::to_string(axis.size) +
-                " entries; they need 4 to " + std::to_string(kMaxTableSize));
+    throw ErrorIn(ErrorKind::kRange, root.source(),
+                  std::string("key 'theta_nodes' and 'phi_nodes' make tables ") +
+                      FactorName(factor) + " of " + std::to_string(axis.size) +
+                      " entries; they need 4 to " + std::to_string(kMaxTableSize))
+        .About("theta_nodes", axis.size);
   }
   return axis;
 }
@@ -127,7 +129,8 @@ Axis ReadPolarAxis(const Node& root, Factor factor) {
 void CheckPolarTable(const Node& table, const Axis& axis) {
   if (table.is_object()) {
     if (static_cast<int>(TableEntries(table)) != axis.size) {
-      table["size"].Fail("must be " + std::to_string(axis.size) + ", as there are nodes");
+      table["size"].Fail("must be " + std::to_string(axis.size) + ", as there are nodes",
+                         ErrorKind::kMismatch);
     }
     return;
   }
@@ -160,7 +163,8 @@ ModelSpec ReadSpec(const Node& root, size_t channels = kChannels) {
       if (!table.is_object()) {
         table.CheckArraySize(size);
       } else if (TableEntries(table) != size) {
-        table["size"].Fail("must be " + std::to_string(size) + ", as in the first table");
+        table["size"].Fail("must be " + std::to_string(size) + ", as in the first table",
+                           ErrorKind::kMismatch);
       }
     }
     AxisOf(factor, &spec).size = static_cast<int>(size);
@@ -192,7 +196,7 @@ std::vector<int> ReadTable(const Node& node, const Axis& axis, std::span<double>
     return entries;
   }
   const Node nodes = node["nodes"], values = node["values"];
-  if (nodes.ArraySize() == 0) nodes.Fail("must have at least one entry");
+  if (nodes.ArraySize() == 0) nodes.Fail("must have at least one entry", ErrorKind::kRange, "0");
   values.CheckArraySize(nodes.ArraySize());
   for (size_t k = 0; k < nodes.ArraySize(); ++k) {
     const int entry = nodes[k].Integer(static_cast<int>(table.size()) - 1);
@@ -213,7 +217,7 @@ void ReadNumbers(const Node& root, ModelFile* file) {
   for (int m = 0; m < spec.lobes; ++m) {
     const bool coloured = ReadChannels(root["s"][m], model.s(m));
     if (m > 0 && coloured != layout.coloured_s) {
-      root["s"][m].Fail("must have as many entries as the others");
+      root["s"][m].Fail("must have as many entries as the others", ErrorKind::kMismatch);
     }
     layout.coloured_s = coloured;
   }
@@ -270,7 +274,7 @@ SpectralModel ReadBands(const Node& root) {
     try {
       return SpectralModel(spec, std::move(wavelengths));
     } catch (const Error& error) {
-      throw Error(root.source() + ": " + error.what());
+      throw error.WithMessage(root.source() + ": " + error.what()).At(root.source());
     }
   };
   SpectralModel model = read();
@@ -314,29 +318,34 @@ std::vector<bool> ReadUnobserved(const Node& root, const ModelSpec& spec, const 
   return unobserved;
 }
 
-std::string NotAModel(const std::string& source) { return source + ": not a model file"; }
+constexpr const char* kNotAModel = "not a model file";
 
 }  // namespace
 
 ModelFile ParseModel(std::string_view text, const std::string& source) {
-  const JsonValue json = JsonValue::Parse(text, NotAModel(source));
+  const JsonValue json = JsonValue::Parse(text, source, kNotAModel);
   if (json.type() != JsonValue::Type::kObject) {
-    throw Error(NotAModel(source) + ": it must be a JSON object, not " + json.type_name());
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  kNotAModel + std::string(": it must be a JSON object, not ") + json.type_name());
   }
   const Node root(json, "", source);
   if (const std::string format = root["format"].String(); format != kModelFormat) {
-    root["format"].Fail("must be \"" + std::string(kModelFormat) + "\"");
+    root["format"].Fail("must be \"" + std::string(kModelFormat) + "\"", ErrorKind::kFormat,
+                        format);
   }
   if (const int version = root["version"].Integer(std::numeric_limits<int>::max());
       version < kModelVersion || version > kSpectralVersion) {
     root["version"].Fail("is " + std::to_string(version) + "; this program reads versions " +
-                         std::to_string(kModelVersion) + " to " + std::to_string(kSpectralVersion) +
-                         (version > kSpectralVersion ? "; update it" : ""));
+                             std::to_string(kModelVersion) + " to " +
+                             std::to_string(kSpectralVersion) +
+                             (version > kSpectralVersion ? "; update it" : ""),
+                         ErrorKind::kUnsupported, std::to_string(version));
   }
   const std::string kind = root["kind"].String();
   if (kind != kIsotropicKind && kind != kAnisotropicKind) {
     root["kind"].Fail("must be \"" + std::string(kIsotropicKind) + "\" or \"" + kAnisotropicKind +
-                      "\", the kinds this program reads");
+                          "\", the kinds this program reads",
+                      ErrorKind::kUnknown, kind);
   }
   ModelFile file;
   if (root["version"].Integer(kSpectralVersion) == kSpectralVersion) {
@@ -352,7 +361,7 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
 }
 
 ModelFile ReadModel(const std::string& path) {
-  return ParseModel(ReadJsonText(path, NotAModel(path)), path);
+  return ParseModel(ReadJsonText(path, kNotAModel), path);
 }
 
 }  // namespace trilobe

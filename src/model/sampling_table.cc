@@ -71,7 +71,8 @@ SamplingTable<Real>::SamplingTable(const FactorModel& model) : model_(model) {
   diffuse_albedo_ = static_cast<Real>(Mean(Rgb{d[0], d[1], d[2]}) * kPi);
   constexpr double kLargest = std::numeric_limits<float>::max();
   if (!(diffuse_albedo_ <= kLargest) || !(BoundOf(model) <= kLargest)) {
-    throw Error("the model's values overflow; its factors are too large");
+    throw Error(ErrorKind::kData, "the model's values overflow; its factors are too large")
+        .About("model", "overflow");
   }
 }
 

@@ -102,25 +102,26 @@ constexpr Band kBands[] = {
 
 void CheckWavelengths(std::span<const double> wavelengths, const std::string& source) {
   constexpr double kMaxGap = 50;
-  const auto fail = [&](const auto&... parts) {
+  const auto fail = [&](ErrorKind kind, double wavelength, const auto&... parts) {
     std::ostringstream message;
     message << source << ": ";
     (message << ... << parts);
-    throw Error(message.str());
+    throw Error(kind, message.str()).At(source).About("wavelengths", wavelength);
   };
   for (size_t k = 1; k < wavelengths.size(); ++k) {
     if (!(wavelengths[k] > wavelengths[k - 1])) {
-      fail("wavelength ", wavelengths[k], " nm comes after ", wavelengths[k - 1],
-           " nm; wavelengths must ascend");
+      fail(ErrorKind::kRange, wavelengths[k], "wavelength ", wavelengths[k], " nm comes after ",
+           wavelengths[k - 1], " nm; wavelengths must ascend");
     }
     if (wavelengths[k] - wavelengths[k - 1] > kMaxGap) {
-      fail("no wavelength between ", wavelengths[k - 1], " and ", wavelengths[k],
-           " nm; a colour needs one every 50 nm");
+      fail(ErrorKind::kMissing, wavelengths[k], "no wavelength between ", wavelengths[k - 1],
+           " and ", wavelengths[k], " nm; a colour needs one every 50 nm");
     }
   }
   if (wavelengths.empty() || !(wavelengths.front() <= 400 + kMaxGap) ||
       !(wavelengths.back() >= 700 - kMaxGap)) {
-    fail("wavelengths do not reach from 450 to 650 nm or further, which a colour needs");
+    fail(ErrorKind::kMissing, wavelengths.empty() ? 0 : wavelengths.back(),
+         "wavelengths do not reach from 450 to 650 nm or further, which a colour needs");
   }
 }
 

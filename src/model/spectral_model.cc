@@ -17,14 +17,19 @@ namespace {
 constexpr const char* kName = "the spectral model";
 
 void CheckBands(const ModelSpec& spec, std::span<const double> wavelengths) {
-  const auto fail = [](const std::string& problem) { throw Error(kName + (": " + problem)); };
-  if (spec.D.per_channel || spec.G.per_channel) fail("its bands must share D and G");
+  const auto fail = [](ErrorKind kind, const char* key, const std::string& problem) {
+    throw Error(kind, kName + (": " + problem)).About(key);
+  };
+  if (spec.D.per_channel || spec.G.per_channel) {
+    fail(ErrorKind::kUnsupported, "D, G", "its bands must share D and G");
+  }
   if (wavelengths.empty() || wavelengths.size() > SpectralModel::kMaxBands) {
-    fail("it has " + std::to_string(wavelengths.size()) + " wavelengths; it needs 1 to " +
-         std::to_string(SpectralModel::kMaxBands));
+    fail(ErrorKind::kRange, "bands",
+         "it has " + std::to_string(wavelengths.size()) + " wavelengths; it needs 1 to " +
+             std::to_string(SpectralModel::kMaxBands));
   }
   if (!std::ranges::all_of(wavelengths, [](double x) { return x > 0 && std::isfinite(x); })) {
-    fail("its wavelengths must be finite and above 0 nm");
+    fail(ErrorKind::kRange, "wavelengths", "its wavelengths must be finite and above 0 nm");
   }
   SpectralColor::OfBands(wavelengths, kName);  // its errors
 }
@@ -111,7 +116,7 @@ void CheckParameters(const SpectralModel& model) {
       std::ostringstream message;
       message << "at " << model.wavelengths()[l] << " nm or the two wavelengths above it, "
               << error.what();
-      throw Error(message.str());
+      throw error.WithMessage(message.str());
     }
   }
 }

@@ -36,7 +36,7 @@ void CheckStretch(const Stretch& stretch) {
     std::ostringstream message;
     message << "a stretch of highlights by the exponent " << exponent << "; it must be from "
             << -kMaxStretch << " to " << kMaxStretch;
-    throw Error(message.str());
+    throw Error(ErrorKind::kRange, message.str()).About("stretch", exponent);
   }
 }
 
@@ -63,8 +63,10 @@ void Stretches::Check(int lobes) const {
   for (const Stretch& stretch : distinct_) CheckStretch(stretch);
   const int count = static_cast<int>(index_.size());
   if (!several() || count == lobes) return;
-  throw Error("there are stretches of " + std::to_string(count) + " lobes, but " +
-              std::to_string(lobes) + " lobes; give one a lobe, or one for all");
+  throw Error(ErrorKind::kMismatch, "there are stretches of " + std::to_string(count) +
+                                        " lobes, but " + std::to_string(lobes) +
+                                        " lobes; give one a lobe, or one for all")
+      .About("stretches", count);
 }
 
 }  // namespace trilobe

@@ -11,7 +11,9 @@
 namespace trilobe {
 
 NodeWeights WeightsAt(std::span<const int> nodes, int entry) {
-  if (nodes.empty()) throw Error("a table needs one node or more");
+  if (nodes.empty()) {
+    throw Error(ErrorKind::kMissing, "a table needs one node or more").About("nodes");
+  }
   const auto right = std::ranges::lower_bound(nodes, entry);
   const int r = static_cast<int>(right - nodes.begin());
   if (right == nodes.end()) return {r - 1, r - 1, 0};
@@ -56,15 +58,19 @@ void CheckLayout(const TableLayout& layout, const ModelSpec& spec) {
     const auto& tables = layout.nodes[static_cast<int>(factor)];
     const std::string name = FactorName(factor);
     if (static_cast<int>(tables.size()) != spec.num_tables(factor)) {
-      throw Error("the layout has " + std::to_string(tables.size()) + " tables " + name +
-                  ", but the model " + std::to_string(spec.num_tables(factor)));
+      throw Error(ErrorKind::kMismatch, "the layout has " + std::to_string(tables.size()) +
+                                            " tables " + name + ", but the model " +
+                                            std::to_string(spec.num_tables(factor)))
+          .About(name, tables.size());
     }
     for (const std::vector<int>& nodes : tables) {
       const bool ascend = std::ranges::adjacent_find(nodes, std::greater_equal()) == nodes.end();
       if (nodes.empty() || !ascend || nodes.front() < 0 ||
           nodes.back() >= spec.table_size(factor)) {
-        throw Error("the nodes of a table " + name + " must be one or more, ascending, from 0 to " +
-                    std::to_string(spec.table_size(factor) - 1));
+        throw Error(ErrorKind::kRange, "the nodes of a table " + name +
+                                           " must be one or more, ascending, from 0 to " +
+                                           std::to_string(spec.table_size(factor) - 1))
+            .About(name);
       }
     }
   }

@@ -103,8 +103,9 @@ bool Run::Record(const FactorModel& current, const Step& step) {
     record.objective = objective_.data().Value(current);
   }
   if (record.iteration == 0 && !std::isfinite(record.minimised())) {
-    throw Error(objective_.samples().source +
-                ": E overflows at the starting model; its factors are too large");
+    throw ErrorIn(ErrorKind::kData, objective_.samples().source,
+                  "E overflows at the starting model; its factors are too large")
+        .About("model", "overflow");
   }
   record.seconds = seconds();
   record.processor_seconds = ProcessorSeconds();

@@ -22,8 +22,9 @@ bool IsValid(const Rgb& rho) {
 
 void CheckSize(size_t size, size_t wanted, const std::string& what) {
   if (size == wanted) return;
-  throw Error(what + " has " + std::to_string(size) + " entries, and must have " +
-              std::to_string(wanted));
+  throw Error(ErrorKind::kMismatch, what + " has " + std::to_string(size) +
+                                        " entries, and must have " + std::to_string(wanted))
+      .About(what, size);
 }
 
 }  // namespace
@@ -42,13 +43,20 @@ TexelSolver::TexelSolver(std::vector<Cosines> cosines, std::span<const std::vect
       weighting_(weighting),
       cosines_(std::move(cosines)) {
   if (lobes.size() > kMaxTexelMaterials) {
-    throw Error("there are " + std::to_string(lobes.size()) + " materials; give at most " +
-                std::to_string(kMaxTexelMaterials));
+    throw Error(ErrorKind::kRange, "there are " + std::to_string(lobes.size()) +
+                                       " materials; give at most " +
+                                       std::to_string(kMaxTexelMaterials))
+        .About("materials", lobes.size());
   }
-  if (!weighting.formula) throw Error("weighting '" + weighting.name + "' has no formula");
+  if (!weighting.formula) {
+    throw Error(ErrorKind::kMissing, "weighting '" + weighting.name + "' has no formula")
+        .About("weighting", weighting.name);
+  }
   for (const Cosines& cosine : cosines_) {
     const auto above = [](double x) { return x > 0 && x <= 1; };
-    if (!above(cosine.i) || !above(cosine.o)) throw Error("a direction is below the surface");
+    if (!above(cosine.i) || !above(cosine.o)) {
+      throw Error(ErrorKind::kRange, "a direction is below the surface").About("direction");
+    }
   }
   const size_t width = 1 + lobes.size();
   columns_.assign(cosines_.size() * kChannels * width, 1);
@@ -57,7 +65,9 @@ TexelSolver::TexelSolver(std::vector<Cosines> cosines, std::span<const std::vect
     for (size_t j = 0; j < cosines_.size(); ++j) {
       for (size_t c = 0; c < kChannels; ++c) {
         const double f = lobes[b - 1][j][c];
-        if (!(std::abs(f) <= kMaxBrdf)) throw Error("a material's value overflows");
+        if (!(std::abs(f) <= kMaxBrdf)) {
+          throw Error(ErrorKind::kData, "a material's value overflows").About("material", f);
+        }
         columns_[(j * kChannels + c) * width + b] = f;
       }
     }

@@ -5,15 +5,13 @@
 #include <vector>
 
 #include "experiments/limits/compare_forms.h"
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::HasSubstr;
 
 // A measurement, and a fit of one lobe to it.
 struct Fitted {
@@ -48,7 +46,8 @@ TEST(CompareForms, WhatCannotBeIsSaid) {
     return ErrorOf(
         [&] { CompareForms(fitted.problem, TermModel::Of(fitted.model), {.forms = {form}}); });
   };
-  EXPECT_THAT(error_of("harmonic"), HasSubstr("unknown form 'harmonic'; known: paper,"));
+  EXPECT_THAT(error_of("harmonic"),
+              IsError(ErrorKind::kUnknown, {.key = "form", .value = "harmonic"}));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/model/half_vector_bins.h"
 #include "tests/model/materials.h"
 #include "tests/test_util.h"
@@ -104,8 +105,10 @@ TEST(NdfSamplerTest, BinsOfOneDegreeMissNarrowHighlights) {
   };
   EXPECT_GT(within(NdfSampler::Bins::kOfModel), 600);
   EXPECT_LT(within(NdfSampler::Bins::kOneDegree), 350);
-  EXPECT_THROW((NdfSampler{FactorModel(ModelSpec::Anisotropic(1)), NdfSampler::Bins::kOneDegree}),
-               Error);
+  EXPECT_THAT(ErrorOf([&] {
+                (NdfSampler{FactorModel(ModelSpec::Anisotropic(1)), NdfSampler::Bins::kOneDegree});
+              }),
+              IsError(ErrorKind::kUnsupported, {.key = "anisotropic"}));
 }
 
 TEST(NdfSamplerTest, LosesBelowTheHorizonWhatBsdfDoesNot) {
@@ -147,7 +150,8 @@ TEST(NdfSamplerTest, HasAnAnswerForAnyNumbersAndDirections) {
   }
   FactorModel unbounded = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
   for (double& s : unbounded.s(0)) s = 1e300;
-  EXPECT_THROW(NdfSampler{unbounded}, Error);
+  EXPECT_THAT(ErrorOf([&] { NdfSampler{unbounded}; }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
 }
 
 }  // namespace

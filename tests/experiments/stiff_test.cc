@@ -14,6 +14,7 @@
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
 #include "model/objective/gauge.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -175,7 +176,8 @@ TEST(Turned, HaveTheTurnedAnswer) {
 
 TEST(CheckCertifies, RefusesOtherSamples) {
   const StiffProblem problem = FindStiffCase("regular").make();
-  EXPECT_THROW(CheckCertifies(CertificateOf("quantised"), MakeObjective(problem)), Error);
+  EXPECT_THAT(ErrorOf([&] { CheckCertifies(CertificateOf("quantised"), MakeObjective(problem)); }),
+              IsError(ErrorKind::kMismatch, {.key = "case", .value = "quantised"}));
 }
 
 }  // namespace

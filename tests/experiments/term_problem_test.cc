@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/limits/term_forms.h"
+#include "tests/error_of.h"
 #include "tests/model/spectral_materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -133,7 +134,9 @@ TEST(FitTerms, FitsWavelengthsTogether) {
   const TermProblem problem(objective, start.spec(), /*bands=*/true);
   const TermFit fit = FitTerms(problem, start, {.max_steps = 200, .tolerance = 1e-9});
   EXPECT_LT(fit.trace.back(), 1e-6 * problem.MeasuredEnergy());
-  EXPECT_THROW(TermProblem(objective, start.spec()), Error);  // seven channels are not three
+  EXPECT_THAT(ErrorOf([&] { TermProblem(objective, start.spec()); }),
+              IsError(ErrorKind::kMismatch,
+                      {.key = "channels", .value = "7"}));  // seven channels are not three
 }
 
 // An entry that nothing reads goes on as its neighbour.

@@ -6,15 +6,13 @@
 
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/fit/finish/node_choice.h"
 #include "trilobe/fit/finish/synthetic_prior.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 8};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -33,13 +31,14 @@ TEST(FitArguments, NumbersOutOfTheirRange) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
   for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
-    EXPECT_THAT(ErrorOf([&] { WithPrior(objective, {.weight = bad}); }), HasSubstr("weight"));
+    EXPECT_THAT(ErrorOf([&] { WithPrior(objective, {.weight = bad}); }),
+                IsError(ErrorKind::kRange, {.key = "weight"}));
   }
   for (const double bad : {-1.0, kNaN, kInfinity}) {
     EXPECT_THAT(ErrorOf([&] {
                   ChooseNodes(objective, {FormSpec{.name = "own", .spec = spec}}, {.prior = bad});
                 }),
-                HasSubstr("prior"));
+                IsError(ErrorKind::kRange, {.key = "prior"}));
   }
 }
 
@@ -47,23 +46,26 @@ TEST(FitArguments, ModelsOfAnotherSpec) {
   const Objective objective =
       MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(2, kGrid));
   FactorModel other(ModelSpec::SharedFactors(1, kGrid));
-  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &other); }), HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &other); }),
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
   FactorModel bad(objective.spec());
   bad.d()[1] = kNaN;
-  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("parameter 1"));
-  EXPECT_THAT(ErrorOf([&] { ReflectanceOf(objective, other); }), HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }),
+              IsError(ErrorKind::kData, {.key = "parameter 1", .value = "nan"}));
+  EXPECT_THAT(ErrorOf([&] { ReflectanceOf(objective, other); }),
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
   const TableLayout layout = TableLayout::Full(other.spec());
   EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, other, layout, 30); }),
-              HasSubstr("another spec"));
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
   EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
-              HasSubstr("parameter 1"));
+              IsError(ErrorKind::kData, {.key = "parameter 1", .value = "nan"}));
   bad.d()[1] = 1;
   EXPECT_THAT(ErrorOf([&] {
                 MatchReflectance(objective, Objective(objective, other.spec()), bad, layout, 30);
               }),
-              HasSubstr("another spec"));
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
   EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
-              HasSubstr("layout"));
+              IsError(ErrorKind::kMismatch, {.key = "D", .value = "1"}));
 }
 
 }  // namespace

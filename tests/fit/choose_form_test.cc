@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
 
@@ -52,7 +53,10 @@ TEST(AnisotropicForms, KeepToTheBudgetAndToTheData) {
       }
     }
   }
-  EXPECT_THROW(AnisotropicForms(Default(), {6, 48}, 50), Error);
+  EXPECT_THAT(ErrorOf([&] {
+                AnisotropicForms(Default(), {6, 48}, 50);
+              }),
+              IsError(ErrorKind::kRange, {.key = "max_parameters", .value = "50"}));
 }
 
 }  // namespace

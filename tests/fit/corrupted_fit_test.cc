@@ -17,10 +17,6 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-
 // AWLS for some sweeps.
 FitOptions Quick() {
   FitOptions options;
@@ -63,7 +59,7 @@ TEST_P(CorruptedFit, IsSoundOrOneLine) {
         LeaveOutOutliers(1, &measured);
         ExpectSoundFit(measured, name);
       } catch (const Error& error) {
-        EXPECT_THAT(error.what(), AllOf(HasSubstr("sample"), Not(HasSubstr("\n")))) << name;
+        EXPECT_EQ(error.kind(), ErrorKind::kData) << name << ": " << error.what();
       }
     }
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/finish/reach.h"
@@ -99,7 +100,10 @@ TEST(HeldOutPart, ScoresWhatWasNotFitted) {
   EXPECT_GT(with_diffuse(0.9), with_diffuse(0.5));
 }
 
-TEST(HeldOutPart, RefusesTooFew) { EXPECT_THROW(HeldOutPart(White(1), 1, 1), Error); }
+TEST(HeldOutPart, RefusesTooFew) {
+  EXPECT_THAT(ErrorOf([&] { HeldOutPart(White(1), 1, 1); }),
+              IsError(ErrorKind::kData, {.key = "directions", .value = "1"}));
+}
 
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,6 +9,7 @@
 
 #include "model/objective/gauge.h"
 #include "model/objective/lobes.h"
+#include "tests/error_of.h"
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -18,8 +19,6 @@
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::HasSubstr;
 
 double Degrees(double x) { return DegreesToRadians(x); }
 
@@ -61,14 +60,32 @@ TEST(Axis, RefusesNodesThatDoNotAscendOrAreTooMany) {
     return spec;
   };
   EXPECT_NO_THROW(CheckSpec(spec(Axis::Polar({0, 40, 89}, 4))));
-  EXPECT_THROW(CheckSpec(spec(Axis::Polar({0, 40, 40}, 4))), Error);
-  EXPECT_THROW(CheckSpec(spec(Axis::Polar({0, 40, 90}, 4))), Error);
-  EXPECT_THROW(CheckSpec(spec(Axis::Polar({0, std::nan(""), 80}, 4))), Error);
-  EXPECT_THROW(CheckSpec(spec(Axis::Polar({-1, 40}, 4))), Error);
-  EXPECT_THROW(CheckSpec(spec(Axis::Polar({}, 4))), Error);
-  EXPECT_THROW(CheckSpec(spec(Axis::Polar({0, 40}, kMaxTableSize))), Error);
-  EXPECT_THROW(Axis::Utia().At(std::nan(""), 0), Error);
-  EXPECT_THROW(Axis::Utia().At(0, std::nan("")), Error);
+  EXPECT_THAT(ErrorOf([&] {
+                CheckSpec(spec(Axis::Polar({0, 40, 40}, 4)));
+              }),
+              IsError(ErrorKind::kRange, {.key = "G", .value = "40"}));
+  EXPECT_THAT(ErrorOf([&] {
+                CheckSpec(spec(Axis::Polar({0, 40, 90}, 4)));
+              }),
+              IsError(ErrorKind::kRange, {.key = "G", .value = "90"}));
+  EXPECT_THAT(ErrorOf([&] {
+                CheckSpec(spec(Axis::Polar({0, std::nan(""), 80}, 4)));
+              }),
+              IsError(ErrorKind::kRange, {.key = "G", .value = "80"}));
+  EXPECT_THAT(ErrorOf([&] {
+                CheckSpec(spec(Axis::Polar({-1, 40}, 4)));
+              }),
+              IsError(ErrorKind::kRange, {.key = "G", .value = "40"}));
+  EXPECT_THAT(ErrorOf([&] { CheckSpec(spec(Axis::Polar({}, 4))); }),
+              IsError(ErrorKind::kRange, {.key = "axis"}));
+  EXPECT_THAT(ErrorOf([&] {
+                CheckSpec(spec(Axis::Polar({0, 40}, kMaxTableSize)));
+              }),
+              IsError(ErrorKind::kRange, {.key = "G", .value = "4096"}));
+  EXPECT_THAT(ErrorOf([&] { Axis::Utia().At(std::nan(""), 0); }),
+              IsError(ErrorKind::kRange, {.key = "theta, phi"}));
+  EXPECT_THAT(ErrorOf([&] { Axis::Utia().At(0, std::nan("")); }),
+              IsError(ErrorKind::kRange, {.key = "theta, phi"}));
 }
 
 // Eq. 4 written out by itself.
@@ -231,21 +248,18 @@ TEST(Anisotropic, ASplitLobeAddsUp) {
 
 TEST(Anisotropic, WantsAzimuths) {
   const ModelSpec spec = ModelSpec::Anisotropic(1);
-  const auto error = [&](const BrdfSamples& samples) -> std::string {
-    try {
-      const Objective objective(samples, spec, FindWeighting("compressive"));
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+  const auto error = [&](const BrdfSamples& samples) {
+    return ErrorOf([&] { const Objective objective(samples, spec, FindWeighting("compressive")); });
   };
   const BrdfSamples on_grid = ValidSamples(RandomTable({8, 9, 10}, 1));
   EXPECT_THAT(error(on_grid),
-              HasSubstr("a MERL grid, which knows no azimuths, wants an isotropic"));
-  EXPECT_THAT(error(Scattered(on_grid)), HasSubstr("azimuths are not known"));
+              IsError(ErrorKind::kUnsupported,
+                      {.key = "anisotropic",
+                       .value = "a measurement on a MERL grid, which knows no azimuths,"}));
+  EXPECT_THAT(error(Scattered(on_grid)), IsError(ErrorKind::kMissing, {.key = "directions"}));
   BrdfSamples bad = UtiaSamples(RandomModel(spec, 6));
   bad.directions[17].phi_o = std::nan("");
-  EXPECT_THAT(error(bad), HasSubstr("sample 17 has a direction that is none"));
+  EXPECT_THAT(error(bad), IsError(ErrorKind::kRange, {.key = "sample 17", .value = "directions"}));
 }
 
 TEST(Anisotropic, ThinnedSamplesStillTouchEveryNode) {

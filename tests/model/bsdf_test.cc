@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/system/process.h"
+#include "tests/error_of.h"
 #include "tests/model/half_vector_bins.h"
 #include "tests/model/materials.h"
 #include "tests/test_util.h"
@@ -184,9 +185,11 @@ TEST(BsdfSampling, ManyAtOnceAreThoseOfEach) {
       EXPECT_EQ(pdfs[k], bsdf.Pdf(wi[k], wo[k])) << name;
     }
     pdfs.pop_back();
-    EXPECT_THROW(bsdf.Pdfs(wi, wo, pdfs), Error);
+    EXPECT_THAT(ErrorOf([&] { bsdf.Pdfs(wi, wo, pdfs); }),
+                IsError(ErrorKind::kMismatch, {.key = "wi", .value = "20"}));
     u.pop_back();
-    EXPECT_THROW(bsdf.SamplesOfWo(wi, u, samples), Error);
+    EXPECT_THAT(ErrorOf([&] { bsdf.SamplesOfWo(wi, u, samples); }),
+                IsError(ErrorKind::kMismatch, {.key = "wi", .value = "20"}));
   }
 }
 
@@ -282,11 +285,14 @@ TEST(BsdfTest, ValuesNeedNoTableOfSampling) {
 TEST(BsdfTest, RefusesAModelWhoseValuesOverflow) {
   FactorModel model = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
   for (double& s : model.s(0)) s = 1e300;
-  EXPECT_THROW(Bsdf<double>{model}, Error);
-  EXPECT_THROW(Bsdf<float>{model}, Error);
+  EXPECT_THAT(ErrorOf([&] { Bsdf<double>{model}; }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
+  EXPECT_THAT(ErrorOf([&] { Bsdf<float>{model}; }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
   for (double& s : model.s(0)) s = 1;
   for (double& d : model.d()) d = 1e39;
-  EXPECT_THROW(Bsdf<float>{model}, Error);
+  EXPECT_THAT(ErrorOf([&] { Bsdf<float>{model}; }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/catmull_rom.h"
 #include "trilobe/core/base/error.h"
@@ -22,9 +23,12 @@ TEST(FactorModel, StartsAtZero) {
 }
 
 TEST(FactorModel, RefusesABadSpec) {
-  EXPECT_THROW(FactorModel(ModelSpec::SharedFactors(9)), Error);
-  EXPECT_THROW(FactorModel(ModelSpec{.d_axis = {.rule = Axis::Rule::kRootTheta, .size = 2}}),
-               Error);
+  EXPECT_THAT(ErrorOf([&] { FactorModel(ModelSpec::SharedFactors(9)); }),
+              IsError(ErrorKind::kRange, {.key = "lobes", .value = "9"}));
+  EXPECT_THAT(ErrorOf([&] {
+                FactorModel(ModelSpec{.d_axis = {.rule = Axis::Rule::kRootTheta, .size = 2}});
+              }),
+              IsError(ErrorKind::kRange, {.key = "D", .value = "2"}));
 }
 
 // [ d | s | D | F | G ]: the accessors walk over all parameters once, in this order.

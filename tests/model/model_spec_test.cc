@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
@@ -91,19 +92,23 @@ TEST(ModelSpec, RefusesWhatIsOutOfRange) {
   EXPECT_NO_THROW(CheckSpec(ModelSpec::SharedFactors(0)));
   EXPECT_NO_THROW(CheckSpec(ModelSpec::SharedFactors(kMaxLobes)));
   EXPECT_NO_THROW(CheckSpec(ModelSpec::SharedFactors(1, {4, 4, 1})));
-  EXPECT_THROW(CheckSpec(ModelSpec::SharedFactors(-1)), Error);
-  EXPECT_THROW(CheckSpec(ModelSpec::SharedFactors(kMaxLobes + 1)), Error);
+  EXPECT_THAT(ErrorOf([&] { CheckSpec(ModelSpec::SharedFactors(-1)); }),
+              IsError(ErrorKind::kRange, {.key = "lobes", .value = "-1"}));
+  EXPECT_THAT(ErrorOf([&] { CheckSpec(ModelSpec::SharedFactors(kMaxLobes + 1)); }),
+              IsError(ErrorKind::kRange, {.key = "lobes", .value = "9"}));
   // Longer tables would overflow the indices of the folded grid.
   const auto with_nodes = [](int nodes) {
     return ModelSpec{.g_axis = {.rule = Axis::Rule::kSpline, .size = nodes}};
   };
   EXPECT_NO_THROW(CheckSpec(with_nodes(kMaxBins)));
-  EXPECT_THROW(CheckSpec(with_nodes(kMaxBins + 1)), Error);
+  EXPECT_THAT(ErrorOf([&] { CheckSpec(with_nodes(kMaxBins + 1)); }),
+              IsError(ErrorKind::kRange, {.key = "G", .value = "1025"}));
   for (Axis ModelSpec::*axis : {&ModelSpec::d_axis, &ModelSpec::f_axis, &ModelSpec::g_axis}) {
     for (const int bad : {3, 0, -90}) {
       ModelSpec spec;
       (spec.*axis).size = bad;
-      EXPECT_THROW(CheckSpec(spec), Error);
+      EXPECT_THAT(ErrorOf([&] { CheckSpec(spec); }),
+                  IsError(ErrorKind::kRange, {.value = std::to_string(bad)}));
     }
   }
 }

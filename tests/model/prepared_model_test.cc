@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/model/materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -75,10 +76,13 @@ TEST(PreparedModelTest, ValuesOfManyPairsAreThoseOfEach) {
       EXPECT_EQ(values[k], prepared.Value(wi[k], wo[k])) << name;
     }
     values.pop_back();
-    EXPECT_THROW(prepared.Values(wi, wo, values), Error);
-    EXPECT_THROW(
-        prepared.Values(std::span(wi).first(3), std::span(wo).first(2), std::span(values).first(3)),
-        Error);
+    EXPECT_THAT(ErrorOf([&] { prepared.Values(wi, wo, values); }),
+                IsError(ErrorKind::kMismatch, {.key = "wi", .value = "33"}));
+    EXPECT_THAT(ErrorOf([&] {
+                  prepared.Values(std::span(wi).first(3), std::span(wo).first(2),
+                                  std::span(values).first(3));
+                }),
+                IsError(ErrorKind::kMismatch, {.key = "wi", .value = "3"}));
   }
 }
 
@@ -158,7 +162,8 @@ TEST(PreparedModelTest, IsZeroWhereTheSplineThroughGIsNegative) {
 TEST(PreparedModelTest, RefusesParametersThatAreNone) {
   FactorModel model(ModelSpec::SharedFactors(1));
   model.s(0)[1] = -1;
-  EXPECT_THROW(PreparedModel<double>{model}, Error);
+  EXPECT_THAT(ErrorOf([&] { PreparedModel<double>{model}; }),
+              IsError(ErrorKind::kData, {.key = "parameter 4", .value = "-1"}));
 }
 
 }  // namespace

@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/model/spectral_materials.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::HasSubstr;
 
 std::vector<NamedSpec> SpectralSpecs() {
   ModelSpec by_lobe = ModelSpec::SharedFactors(3);
@@ -92,24 +91,25 @@ TEST(SpectralModel, IsZeroBelowTheSurface) {
 
 TEST(SpectralModel, RefusesWhatIsNone) {
   const auto error = [](const ModelSpec& spec, const std::vector<double>& wavelengths) {
-    try {
-      SpectralModel(spec, wavelengths);
-    } catch (const Error& problem) {
-      return std::string(problem.what());
-    }
-    return std::string();
+    return ErrorOf([&] { SpectralModel(spec, wavelengths); });
   };
   const ModelSpec spec = ModelSpec::SharedFactors(1);
-  EXPECT_THAT(error(spec, {}), HasSubstr("it has 0 wavelengths; it needs 1 to 1024"));
-  EXPECT_THAT(error(spec, std::vector<double>(1025, 500)), HasSubstr("1025 wavelengths"));
-  EXPECT_THAT(error(spec, {500, 450}), HasSubstr("wavelengths must ascend"));
-  EXPECT_THAT(error(spec, {500, 550}), HasSubstr("do not reach"));
-  EXPECT_THAT(error(spec, {0}), HasSubstr("finite and above 0 nm"));
-  EXPECT_THAT(error(spec, {std::numeric_limits<double>::infinity()}), HasSubstr("finite"));
-  EXPECT_THAT(error(ModelSpec::IndependentG(), {500}), HasSubstr("must share D and G"));
+  EXPECT_THAT(error(spec, {}), IsError(ErrorKind::kRange, {.key = "bands"}));
+  EXPECT_THAT(error(spec, std::vector<double>(1025, 500)),
+              IsError(ErrorKind::kRange, {.key = "bands"}));
+  EXPECT_THAT(error(spec, {500, 450}),
+              IsError(ErrorKind::kRange, {.key = "wavelengths", .value = "450"}));
+  EXPECT_THAT(error(spec, {500, 550}),
+              IsError(ErrorKind::kMissing, {.key = "wavelengths", .value = "550"}));
+  EXPECT_THAT(error(spec, {0}), IsError(ErrorKind::kRange, {.key = "wavelengths"}));
+  EXPECT_THAT(error(spec, {std::numeric_limits<double>::infinity()}),
+              IsError(ErrorKind::kRange, {.key = "wavelengths"}));
+  EXPECT_THAT(error(ModelSpec::IndependentG(), {500}),
+              IsError(ErrorKind::kUnsupported, {.key = "D, G"}));
   SpectralModel model = AnalyticSpectralModel(spec, VisibleWavelengths(7));
   model.s(0)[4] = -1;
-  EXPECT_THROW(CheckParameters(model), Error);
+  EXPECT_THAT(ErrorOf([&] { CheckParameters(model); }),
+              IsError(ErrorKind::kData, {.key = "parameter 4", .value = "-1"}));
 }
 
 TEST(Spectra, StayWithTheirSamples) {
@@ -123,7 +123,10 @@ TEST(Spectra, StayWithTheirSamples) {
         Evaluate(model, ToDirections(measurement.samples.directions[j]));
     EXPECT_THAT(measurement.samples.SpectrumOf(j), testing::ElementsAreArray(rho));
   }
-  EXPECT_THROW(measurement.samples.SetSpectra({{500}, {1, 2}}), Error);
+  EXPECT_THAT(ErrorOf([&] {
+                measurement.samples.SetSpectra({{500}, {1, 2}});
+              }),
+              IsError(ErrorKind::kMismatch, {.key = "spectra", .value = "2"}));
 }
 
 }  // namespace

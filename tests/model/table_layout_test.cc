@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -53,9 +54,12 @@ TEST(TableLayout, RefusesNodesThatAreNone) {
   for (const std::vector<int>& nodes : {std::vector<int>{}, {2, 1}, {1, 1}, {-1, 2}, {0, 6}}) {
     TableLayout layout = TableLayout::Full(spec);
     layout.of(Factor::kD, 0) = nodes;
-    EXPECT_THROW(CheckLayout(layout, spec), Error);
+    EXPECT_THAT(ErrorOf([&] { CheckLayout(layout, spec); }),
+                IsError(ErrorKind::kRange, {.key = "D"}));
   }
-  EXPECT_THROW(CheckLayout(TableLayout::Full(ModelSpec::SharedFactors(2, kGrid)), spec), Error);
+  EXPECT_THAT(
+      ErrorOf([&] { CheckLayout(TableLayout::Full(ModelSpec::SharedFactors(2, kGrid)), spec); }),
+      IsError(ErrorKind::kMismatch, {.key = "D", .value = "2"}));
 }
 
 }  // namespace

@@ -263,6 +263,20 @@ def test_says_in_a_line_what_is_wrong(ask, told):
     assert isinstance(caught.value, ValueError)
 
 
+def test_errors_have_a_kind_and_facts():
+    with pytest.raises(trilobe.Error) as caught:
+        trilobe.load("/no/such/model.json")
+    error = caught.value
+    assert (error.kind, error.file, error.line) == ("file", "/no/such/model.json", None)
+    assert (error.key, error.value) == ("read", "No such file or directory")
+    with pytest.raises(trilobe.Error) as caught:
+        trilobe.Brdf.from_json("{}", "x.json")
+    assert (caught.value.kind, caught.value.file, caught.value.key) == ("missing", "x.json", "format")
+    with pytest.raises(trilobe.Error) as caught:
+        isotropic().eval([0, 0, 1], [0, 0, 0, 1])
+    assert (caught.value.kind, caught.value.key) == ("mismatch", "wo")
+
+
 def test_many_threads_may_use_one_model():
     brdf = anisotropic()
     wi, wo = directions(2000, 17), directions(2000, 18)

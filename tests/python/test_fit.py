@@ -4,6 +4,7 @@ import inspect
 import json
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -290,6 +291,24 @@ def test_says_in_a_line_what_is_wrong(ask, told):
     with pytest.raises(trilobe.Error, match=told) as caught:
         ask()
     assert "\n" not in str(caught.value)
+
+
+def test_errors_have_a_kind_and_facts(tmp_path):
+    path = tmp_path / "x.csv"
+    path.write_text("theta_i,phi_i,theta_o,phi_o,r,g,b\n1,2,3,4,5,6,7\n1,2,3,abc,5,6,7\n")
+    with pytest.raises(trilobe.Error) as caught:
+        trilobe.read(path)
+    error = caught.value
+    assert (error.kind, error.file, error.line) == ("format", str(path), 3)
+    assert (error.key, error.value) == ("phi_o", "abc")
+    with pytest.raises(trilobe.Error) as caught:
+        trilobe.fit(SMALL, weighting="light")
+    error = caught.value
+    assert (error.kind, error.key, error.value) == ("unknown", "weighting", "light")
+    assert (error.file, error.line) == (None, None)
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error)
+    assert (again.kind, again.key, again.value) == ("unknown", "weighting", "light")
 
 
 LONG = """

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/solvers/solver.h"
@@ -40,7 +41,9 @@ TEST(AddingASolver, FitsWhenRegistered) {
   }
   EXPECT_EQ(Solvers().back().name, "page_search");
   EXPECT_EQ(FindSolver("page_search").reference, PageSearchEntry().reference);
-  EXPECT_THROW(RegisterSolver(PageSearchEntry()), Error);  // the name is taken
+  EXPECT_THAT(ErrorOf([&] { RegisterSolver(PageSearchEntry()); }),
+              IsError(ErrorKind::kConflict,
+                      {.key = "solver", .value = "page_search"}));  // the name is taken
 }
 
 TEST(AddingASolver, HonoursLimitsAndStopsWhereNothingLowersE) {

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "solvers/diagnosis.h"
 #include "solvers/gaussian_filter.h"
+#include "tests/error_of.h"
 #include "tests/solvers/solver_kinds.h"
-#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
@@ -20,8 +21,6 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-using testing::HasSubstr;
-
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 8};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -29,10 +28,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class SolverArguments : public testing::TestWithParam<std::string> {
  protected:
   // Checks that the model stays as it was, too.
-  std::string ErrorFrom(const FactorModel& start, const SolverOptions& options = {}) const {
+  std::optional<Error> ErrorFrom(const FactorModel& start,
+                                 const SolverOptions& options = {}) const {
     FactorModel model = start;
-    std::string error =
-        ErrorOf([&] { MakeSolver(GetParam())->Solve(objective_, options, &model); });
+    auto error = ErrorOf([&] { MakeSolver(GetParam())->Solve(objective_, options, &model); });
     const auto same = [](double a, double b) { return a == b || (a != a && b != b); };
     EXPECT_TRUE(std::ranges::equal(model.parameters(), start.parameters(), same));
     return error;
@@ -47,18 +46,22 @@ TEST_P(SolverArguments, StartsThatAreNoModel) {
     for (const size_t k : {size_t{0}, size_t{5}, size_t{12}}) {
       FactorModel model = RandomModel(spec_, 1);
       model.parameters()[k] = bad;
-      EXPECT_THAT(ErrorFrom(model), HasSubstr("parameter " + std::to_string(k))) << bad;
+      EXPECT_THAT(ErrorFrom(model),
+                  IsError(ErrorKind::kData, {.key = "parameter " + std::to_string(k)}))
+          << bad;
     }
   }
   for (const NamedSpec& other : TestSpecs(kGrid)) {
     if (other.spec == spec_) continue;
-    EXPECT_THAT(ErrorFrom(RandomModel(other.spec, 1)), HasSubstr("another spec")) << other.name;
+    EXPECT_THAT(ErrorFrom(RandomModel(other.spec, 1)),
+                IsError(ErrorKind::kMismatch, {.key = "spec"}))
+        << other.name;
   }
   FactorModel huge(spec_);
   std::ranges::fill(huge.parameters(), 1e100);
-  EXPECT_THAT(ErrorFrom(huge), HasSubstr("overflows"));
+  EXPECT_THAT(ErrorFrom(huge), IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
   EXPECT_THAT(ErrorOf([&] { MakeSolver(GetParam())->Solve(objective_, {}, nullptr); }),
-              HasSubstr("null"));
+              IsError(ErrorKind::kMissing, {.key = "the model to start from"}));
 }
 
 TEST_P(SolverArguments, OptionsOutOfTheirRange) {
@@ -69,23 +72,25 @@ TEST_P(SolverArguments, OptionsOutOfTheirRange) {
     return ErrorFrom(start, options);
   };
   EXPECT_THAT(error([](SolverOptions* changed) { changed->max_iterations = -1; }),
-              HasSubstr("max_iterations"));
+              IsError(ErrorKind::kRange, {.key = "max_iterations", .value = "-1"}));
   EXPECT_THAT(error([](SolverOptions* changed) { changed->max_seconds = -1; }),
-              HasSubstr("max_seconds"));
+              IsError(ErrorKind::kRange, {.key = "max_seconds", .value = "-1"}));
   EXPECT_THAT(error([](SolverOptions* changed) { changed->max_seconds = kNaN; }),
-              HasSubstr("max_seconds"));
+              IsError(ErrorKind::kRange, {.key = "max_seconds", .value = "nan"}));
   EXPECT_THAT(error([](SolverOptions* changed) { changed->relative_decrease_tolerance = kNaN; }),
-              HasSubstr("relative_decrease_tolerance"));
+              IsError(ErrorKind::kRange, {.key = "relative_decrease_tolerance", .value = "nan"}));
   for (const double bad : {-1.0, kNaN}) {
     EXPECT_THAT(error([&](SolverOptions* changed) { changed->optimality_tolerance = bad; }),
-                HasSubstr("optimality_tolerance"));
+                IsError(ErrorKind::kRange, {.key = "optimality_tolerance"}));
   }
   for (const double bad : {-1.0, kNaN, kInfinity}) {
     EXPECT_THAT(error([&](SolverOptions* changed) { changed->g_filter_sigma = bad; }),
-                HasSubstr("g_filter_sigma"));
+                IsError(ErrorKind::kRange, {.key = "g_filter_sigma"}));
   }
-  EXPECT_THAT(error([](SolverOptions* changed) { changed->memory = -1; }), HasSubstr("memory"));
-  EXPECT_THAT(error([](SolverOptions* changed) { changed->starts = 0; }), HasSubstr("starts"));
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->memory = -1; }),
+              IsError(ErrorKind::kRange, {.key = "memory", .value = "-1"}));
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->starts = 0; }),
+              IsError(ErrorKind::kRange, {.key = "starts", .value = "0"}));
 }
 
 std::vector<std::string> SolverNames() {
@@ -101,30 +106,36 @@ TEST(RegisterSolver, NeedsANameAndSomethingToMakeIt) {
   const size_t before = Solvers().size();
   SolverEntry entry = FindSolver("awls");
   entry.name = "";
-  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }), HasSubstr("a name"));
+  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }),
+              IsError(ErrorKind::kMissing, {.key = "name"}));
   entry.name = "own";
   entry.make = nullptr;
-  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }), HasSubstr("'own'"));
+  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }),
+              IsError(ErrorKind::kMissing, {.key = "make", .value = "own"}));
   EXPECT_EQ(Solvers().size(), before);
   // This can be told no sooner than when it is asked for.
   entry.make = [] { return nullptr; };
   RegisterSolver(entry);
-  EXPECT_THAT(ErrorOf([] { MakeSolver("own"); }), HasSubstr("'own'"));
+  EXPECT_THAT(ErrorOf([] { MakeSolver("own"); }),
+              IsError(ErrorKind::kMissing, {.key = "solver", .value = "own"}));
 }
 
 TEST(SolverRoom, NullsAndEmptyFunctions) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
   FactorModel model = RandomModel(spec, 1);
-  EXPECT_THAT(ErrorOf([&] { trilobe::Run("own", objective, {}, nullptr); }), HasSubstr("null"));
+  EXPECT_THAT(ErrorOf([&] { trilobe::Run("own", objective, {}, nullptr); }),
+              IsError(ErrorKind::kMissing, {.key = "the model"}));
   trilobe::Run run("own", objective, {}, &model);
-  EXPECT_THAT(ErrorOf([&] { RepeatSweeps(nullptr, objective, model, &run); }), HasSubstr("empty"));
+  EXPECT_THAT(ErrorOf([&] { RepeatSweeps(nullptr, objective, model, &run); }),
+              IsError(ErrorKind::kMissing, {.key = "sweep"}));
   EXPECT_THAT(ErrorOf([&] { RepeatSweeps([](FactorModel*) {}, objective, model, nullptr); }),
-              HasSubstr("null"));
-  EXPECT_THAT(ErrorOf([&] { SmoothG(1, objective.coverage(), nullptr); }), HasSubstr("null"));
+              IsError(ErrorKind::kMissing, {.key = "the run"}));
+  EXPECT_THAT(ErrorOf([&] { SmoothG(1, objective.coverage(), nullptr); }),
+              IsError(ErrorKind::kMissing, {.key = "the model"}));
   EXPECT_THAT(
       ErrorOf([&] { NormalEquations(objective).Evaluate(model, Hessian::kNewton, nullptr); }),
-      HasSubstr("null"));
+      IsError(ErrorKind::kMissing, {.key = "the result"}));
 }
 
 TEST(SolverRoom, NumbersOutOfTheirRange) {
@@ -132,19 +143,22 @@ TEST(SolverRoom, NumbersOutOfTheirRange) {
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
   FactorModel model = RandomModel(spec, 1);
   for (const double bad : {0.0, -1.0, kNaN}) {
-    EXPECT_THAT(ErrorOf([&] { SmoothG(bad, objective.coverage(), &model); }), HasSubstr("sigma"));
+    EXPECT_THAT(ErrorOf([&] { SmoothG(bad, objective.coverage(), &model); }),
+                IsError(ErrorKind::kRange, {.key = "sigma"}));
   }
-  EXPECT_THAT(ErrorOf([&] { SmoothG(1, std::vector<double>(3), &model); }), HasSubstr("coverage"));
+  EXPECT_THAT(ErrorOf([&] { SmoothG(1, std::vector<double>(3), &model); }),
+              IsError(ErrorKind::kMismatch, {.key = "coverage", .value = "3"}));
   const std::vector<double> x(3);
   EXPECT_THAT(ErrorOf([&] { ScaledProjectedGradient(QuadraticModel(), x); }),
-              HasSubstr("gradient"));
+              IsError(ErrorKind::kMismatch, {.key = "the gradient", .value = "0"}));
 }
 
 TEST(SolverRoom, ModelsOfAnotherSpec) {
   const Objective objective =
       MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(2, kGrid));
   const FactorModel other(ModelSpec::SharedFactors(1, kGrid));
-  EXPECT_THAT(ErrorOf([&] { Diagnose(objective, other); }), HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { Diagnose(objective, other); }),
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/solvers/solver_kinds.h"
-#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/solver.h"
@@ -92,7 +92,9 @@ TEST_P(Range, ARightFitOrAnErrorThatNamesTheFactor) {
         ++fitted;
         continue;
       }
-      const std::string error = ErrorOf([&] { Objective(samples, spec, weighting); });
+      const auto thrown = ErrorOf([&] { Objective(samples, spec, weighting); });
+      ASSERT_TRUE(thrown);
+      const std::string error = thrown->what();  // which power helps, it says in words alone
       const size_t at = error.rfind("by 2^");
       ASSERT_NE(at, std::string::npos) << error;
       const int power = std::stoi(error.substr(at + 5));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -177,22 +178,30 @@ TEST(TexelSolver, ScalesWithTheTexel) {
 TEST(TexelSolver, RefusesWhatMakesNoSense) {
   Random random(5);
   const Surface surface(1, &random);
-  EXPECT_THROW(Surface(kMaxTexelMaterials + 1, &random).Solver(false), Error);
+  EXPECT_THAT(ErrorOf([&] { Surface(kMaxTexelMaterials + 1, &random).Solver(false); }),
+              IsError(ErrorKind::kRange, {.key = "materials", .value = "7"}));
   Surface wrong = surface;
   wrong.cosines[2].o = 0;
-  EXPECT_THROW(wrong.Solver(false), Error);
+  EXPECT_THAT(ErrorOf([&] { wrong.Solver(false); }),
+              IsError(ErrorKind::kRange, {.key = "direction"}));
   wrong = surface;
   wrong.lobes[0].pop_back();
-  EXPECT_THROW(wrong.Solver(false), Error);
+  EXPECT_THAT(ErrorOf([&] { wrong.Solver(false); }),
+              IsError(ErrorKind::kMismatch, {.key = "a material", .value = "39"}));
   wrong = surface;
   wrong.lobes[0][7][1] = 1e60;
-  EXPECT_THROW(wrong.Solver(false), Error);
-  EXPECT_THROW(TexelSolver(surface.cosines, surface.lobes, Weighting(), false), Error);
+  EXPECT_THAT(ErrorOf([&] { wrong.Solver(false); }),
+              IsError(ErrorKind::kData, {.key = "material", .value = "1e+60"}));
+  EXPECT_THAT(ErrorOf([&] { TexelSolver(surface.cosines, surface.lobes, Weighting(), false); }),
+              IsError(ErrorKind::kMissing, {.key = "weighting"}));
   const TexelSolver solver = surface.Solver(false);
   std::vector<Rgb> rho(kSamples), found(2), short_of_one(kSamples - 1);
-  EXPECT_THROW(solver.Solve(short_of_one, found), Error);
-  EXPECT_THROW(solver.Solve(rho, short_of_one), Error);
-  EXPECT_THROW(solver.Weigh(rho, short_of_one), Error);
+  EXPECT_THAT(ErrorOf([&] { solver.Solve(short_of_one, found); }),
+              IsError(ErrorKind::kMismatch, {.key = "a texel", .value = "39"}));
+  EXPECT_THAT(ErrorOf([&] { solver.Solve(rho, short_of_one); }),
+              IsError(ErrorKind::kMismatch, {.key = "d and s", .value = "39"}));
+  EXPECT_THAT(ErrorOf([&] { solver.Weigh(rho, short_of_one); }),
+              IsError(ErrorKind::kMismatch, {.key = "an array of weights", .value = "39"}));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void Write(const std::string& model, int count, const std::string& path) {
     for (size_t n = 0; n < row.size(); ++n) row[n] = static_cast<float>(numbers[n]);
     out.write(reinterpret_cast<const char*>(row.data()), sizeof(row));
   }
-  if (!out.flush()) throw trilobe::Error("cannot write " + path);
+  if (!out.flush()) throw trilobe::Error(trilobe::ErrorKind::kFile, "cannot write " + path);
 }
 
 }  // namespace

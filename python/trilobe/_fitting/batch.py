@@ -9,7 +9,7 @@ import subprocess
 import sys
 from typing import Any
 
-from trilobe._core import Error
+from trilobe._model.error import Error
 from trilobe._model.files import text_of_path
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from trilobe import _core
-from trilobe._core import Error
+from trilobe._model.error import Error
 
 
 def fits() -> Any:

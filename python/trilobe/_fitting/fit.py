@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
 from trilobe._fitting.objective import Problem
@@ -26,6 +25,7 @@ from trilobe._fitting.options import (
 from trilobe._fitting.result import Result
 from trilobe._fitting.running import Callback, Stop, run
 from trilobe._model.brdf import Brdf, model_of
+from trilobe._model.error import Error
 from trilobe._model.files import text_of_path
 
 if TYPE_CHECKING:

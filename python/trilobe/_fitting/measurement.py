@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._model.arrays import as_array
 from trilobe._model.brdf import CHANNELS, Brdf, load
+from trilobe._model.error import Error
 from trilobe._model.files import text_of_path
 
 

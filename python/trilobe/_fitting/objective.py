@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
 from trilobe._fitting.options import Form, Weights, stretch_text, weights_of, without_none
 from trilobe._model.arrays import as_array
 from trilobe._model.brdf import Brdf, model_of
+from trilobe._model.error import Error
 
 Vector = NDArray[np.float64]
 

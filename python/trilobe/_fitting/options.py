@@ -11,9 +11,9 @@ from typing import Any, Literal, TypedDict, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.measurement import Measurement
 from trilobe._model.arrays import as_array
+from trilobe._model.error import Error
 
 Form = Literal["shared", "isotropic", "anisotropic", "independent", "auto"]
 SolverName = Literal[

@@ -10,12 +10,12 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
 from trilobe._fitting.objective import Problem
 from trilobe._fitting.uncertainty import Uncertainty, uncertainty
 from trilobe._model.brdf import Brdf
+from trilobe._model.error import Error
 from trilobe._model.files import make_folder, printable, text_of_path, write_text
 
 _FOUND = {

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.measurement import half_angles
 from trilobe._fitting.objective import Objective, Problem
 from trilobe._model.brdf import Brdf
+from trilobe._model.error import Error
 from trilobe._model.table import Table
 
 _MOST = 4000  # most parameters, as matrices of them are stored

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
+from trilobe._model.error import Error
 
 Floats = NDArray[np.floating[Any]]
 
@@ -28,10 +28,15 @@ def as_array(values: Any, name: str) -> NDArray[Any]:
     except Exception as error:  # whatever the other library raises
         reason = (str(error) or type(error).__name__).splitlines()[0]
         raise Error(
-            f"{name} cannot be read as an array in the CPU's memory: {reason}"
+            f"{name} cannot be read as an array in the CPU's memory: {reason}", kind="format", key=name
         ) from None
     if array.dtype.kind not in "fiub":
-        raise Error(f"{name} has the dtype {array.dtype}, and must be of real numbers")
+        raise Error(
+            f"{name} has the dtype {array.dtype}, and must be of real numbers",
+            kind="format",
+            key=name,
+            value=str(array.dtype),
+        )
     return array
 
 
@@ -52,7 +57,10 @@ def check_width(array: Floats, name: str, width: int, what: str) -> None:
     """Raises Error unless the last axis is so long."""
     if array.ndim == 0 or array.shape[-1] != width:
         raise Error(
-            f"{name} has the shape {array.shape}; {what} are an array of the shape (..., {width})"
+            f"{name} has the shape {array.shape}; {what} are an array of the shape (..., {width})",
+            kind="mismatch",
+            key=name,
+            value=str(array.shape),
         )
 
 
@@ -63,7 +71,7 @@ def common_shape(*arrays: Floats) -> tuple[int, ...]:
     except ValueError:
         shapes = " and ".join(str(array.shape) for array in arrays)
         raise Error(
-            f"shapes {shapes} do not go together; all axes but the last must be equal or 1"
+            f"shapes {shapes} do not go together; all axes but the last must be equal or 1", kind="mismatch"
         ) from None
 
 

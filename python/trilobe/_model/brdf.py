@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe import _core
-from trilobe._core import Error
 from trilobe._model.arrays import Floats, as_array, check_width, common_shape, of_one_precision, rows
+from trilobe._model.error import Error
 from trilobe._model.files import printable, text_of_path, write_text
 from trilobe._model.table import Table
 
@@ -369,11 +369,17 @@ def load(path: str | os.PathLike[str]) -> Brdf:
         content = name.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise Error(f"cannot read {printable(name)}: {reason}") from None
+        raise Error(
+            f"cannot read {printable(name)}: {reason}", kind="file", file=str(name), key="read", value=reason
+        ) from None
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
-        raise Error(f"{printable(name)} is no model file: it is not UTF-8; trilobe.read reads measurements") from None
+        raise Error(
+            f"{printable(name)} is no model file: it is not UTF-8; trilobe.read reads measurements",
+            kind="format",
+            file=str(name),
+        ) from None
     return Brdf.from_json(text, str(name))
 
 

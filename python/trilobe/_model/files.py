@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from trilobe._core import Error
+from trilobe._model.error import Error
 
 
 def text_of_path(path: Any) -> str:
@@ -15,11 +15,11 @@ def text_of_path(path: Any) -> str:
         text = os.fsdecode(path)
         text.encode("utf-8")
     except TypeError:
-        raise Error(f"a path must be a str or a path, not {type(path).__name__}") from None
+        raise Error(f"a path must be a str or a path, not {type(path).__name__}", kind="format") from None
     except UnicodeError:
-        raise Error(f"{ascii(path)} is no path that can be written in UTF-8") from None
+        raise Error(f"{ascii(path)} is no path that can be written in UTF-8", kind="format") from None
     if "\0" in text:
-        raise Error(f"{text!r} is no path: it has a null character")
+        raise Error(f"{text!r} is no path: it has a null character", kind="format", value=text)
     return text
 
 
@@ -37,7 +37,10 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        raise Error(f"cannot make the folder {printable(path)}: {getattr(error, 'strerror', None) or error}") from None
+        reason = getattr(error, "strerror", None) or str(error)
+        raise Error(
+            f"cannot make the folder {printable(path)}: {reason}", kind="file", file=str(path), key="make", value=reason
+        ) from None
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
@@ -45,7 +48,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     try:
         content = text.encode("utf-8")
     except ValueError as error:
-        raise Error(f"cannot write {printable(_path_of(path))}: {error}") from None
+        name = _path_of(path)
+        raise Error(f"cannot write {printable(name)}: {error}", kind="format", file=str(name), key="write") from None
     write_bytes(path, content)
 
 
@@ -69,4 +73,6 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         reason = getattr(error, "strerror", None) or str(error)
         if os.path.isdir(name):  # "." is reported as busy
             reason = "it is a folder; give the name of a file"
-        raise Error(f"cannot write {printable(name)}: {reason}") from None
+        raise Error(
+            f"cannot write {printable(name)}: {reason}", kind="file", file=str(name), key="write", value=reason
+        ) from None

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from trilobe._core import Error
+from trilobe._model.error import Error
 
 Tell = Callable[[str], None]
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
+from trilobe._model.error import Error
 from trilobe._model.files import printable
 
 _MAGIC = b"\x76\x2f\x31\x01\x02\x00\x00\x00"

@@ -11,10 +11,10 @@ from typing import Any, Union, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._model.arrays import as_array
 from trilobe._model.brdf import Brdf, load, model_of
+from trilobe._model.error import Error
 from trilobe._model.files import make_folder, printable, text_of_path, write_bytes, write_text
 from trilobe._texels.materials import Problem, find
 from trilobe._texels.source import Source, Vector

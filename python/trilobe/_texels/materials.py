@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._fitting.extension import fits
 from trilobe._fitting.fit import fit
 from trilobe._fitting.measurement import Measurement
 from trilobe._model.brdf import Brdf
+from trilobe._model.error import Error
 from trilobe._texels.texels import lobes_of
 
 Vector = NDArray[np.float64]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._model.arrays import as_array
+from trilobe._model.error import Error
 from trilobe._model.files import printable, text_of_path
 
 _TILE = 1 << 22  # numbers in a tile, unless a row has more

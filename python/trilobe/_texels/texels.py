@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._core import Error
 from trilobe._model.arrays import Floats, check_width, of_one_precision
 from trilobe._model.brdf import Brdf, load
+from trilobe._model.error import Error
 from trilobe._model.files import make_folder, printable, text_of_path, write_text
 from trilobe._texels import exr
 

@@ -102,8 +102,10 @@ class WorkSpaces {
     std::unique_lock lock(mutex_);
     if (there_ == 0) there_ = MapWorkSpaces();
     if (there_ == 0) {
-      throw Error("out of memory: OpenBLAS needs " + std::to_string(kWorkSpace >> 20) +
-                  " MiB of address space; allow more (ulimit -v)");
+      throw Error(ErrorKind::kLimit, "out of memory: OpenBLAS needs " +
+                                         std::to_string(kWorkSpace >> 20) +
+                                         " MiB of address space; allow more (ulimit -v)")
+          .About("memory");
     }
     returned_.wait(lock, [this] { return taken_ < there_; });
     ++taken_;

@@ -212,7 +212,10 @@ std::vector<double> SymmetricEigenvalues(int n, std::vector<double> A) {
   size = std::max(3 * n, static_cast<int>(best_size));
   std::vector<double> work(size);
   dsyev_("N", "L", &n, A.data(), &n, values.data(), work.data(), &size, &info);
-  if (info != 0) throw Error("the eigenvalues of a matrix did not converge");
+  if (info != 0) {
+    throw Error(ErrorKind::kData, "the eigenvalues of a matrix did not converge")
+        .About("eigenvalues");
+  }
   return values;
 }
 

@@ -10,13 +10,18 @@
 namespace trilobe {
 
 CatmullRom::CatmullRom(int nodes) : nodes_(nodes) {
-  if (nodes < 4) throw Error("a spline needs at least 4 nodes, not " + std::to_string(nodes));
+  if (nodes < 4) {
+    throw Error(ErrorKind::kRange, "a spline needs at least 4 nodes, not " + std::to_string(nodes))
+        .About("nodes", nodes);
+  }
 }
 
 double CatmullRom::NodeAngle(int k) const { return (k + 0.5) / nodes_ * (kPi / 2); }
 
 CatmullRom::Location CatmullRom::Locate(double theta) const {
-  if (std::isnan(theta)) throw Error("a direction or an angle is not a number");
+  if (std::isnan(theta)) {
+    throw Error(ErrorKind::kRange, "a direction or an angle is not a number").About("theta", theta);
+  }
   const double x = std::clamp(theta / (kPi / 2) * nodes_ - 0.5, 0.0, nodes_ - 1.0);
   const int interval = std::min(static_cast<int>(x), nodes_ - 2);
   return {interval, x - interval};
@@ -78,8 +83,10 @@ std::array<CatmullRom::Cubic, 4> CatmullRom::WeightPolynomials(int interval) con
 
 std::vector<CatmullRom::Piece> CatmullRom::Pieces(std::span<const double> values) const {
   if (static_cast<int>(values.size()) != nodes_) {
-    throw Error("a spline of " + std::to_string(nodes_) + " nodes needs as many values, not " +
-                std::to_string(values.size()));
+    throw Error(ErrorKind::kMismatch, "a spline of " + std::to_string(nodes_) +
+                                          " nodes needs as many values, not " +
+                                          std::to_string(values.size()))
+        .About("values", values.size());
   }
   // The Hermite form less its chord: a0 = m0 - (f1 - f0), a1 = (f1 - f0) - m1.
   const auto bend = [&](int k) {

@@ -9,20 +9,23 @@ void FailNumber(const std::string& name, double value, const std::string& must_b
   std::ostringstream message;
   message.precision(kDigits);
   message << name << " is " << value << "; it must be " << must_be;
-  throw Error(message.str());
+  throw Error(ErrorKind::kRange, message.str()).About(name, value);
 }
 
 void FailIndex(int64_t index, int64_t size, const char* name) {
   if (size <= 0) {
-    throw Error(std::string(name) + " is " + std::to_string(index) + ", but there is none");
+    throw Error(ErrorKind::kRange,
+                std::string(name) + " is " + std::to_string(index) + ", but there is none")
+        .About(name, index);
   }
   FailNumber(name, static_cast<double>(index), "from 0 to " + std::to_string(size - 1));
 }
 
 void CheckSize(const std::string& name, size_t size, size_t expected) {
   if (size == expected) return;
-  throw Error(name + " has " + std::to_string(size) + " values; it must have " +
-              std::to_string(expected));
+  throw Error(ErrorKind::kMismatch, name + " has " + std::to_string(size) +
+                                        " values; it must have " + std::to_string(expected))
+      .About(name, size);
 }
 
 void CheckNumThreads(int num_threads) {

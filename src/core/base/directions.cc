@@ -31,7 +31,7 @@ void CheckAngles(const HalfDiffAngles& angles) {
   std::ostringstream message;
   message << "theta_h, theta_d, phi_d are " << theta_h << ", " << theta_d << ", " << phi_d
           << "; they must be from 0 to pi/2, pi/2 and pi";
-  throw Error(message.str());
+  throw Error(ErrorKind::kRange, message.str()).About("theta_h, theta_d, phi_d");
 }
 
 DirectionPair ToDirections(const HalfDiffAngles& angles) {

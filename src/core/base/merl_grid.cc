@@ -13,9 +13,11 @@ void CheckGrid(const MerlGrid& grid) {
       size <= std::numeric_limits<int>::max()) {
     return;
   }
-  throw Error("a grid of " + std::to_string(grid.theta_h) + " x " + std::to_string(grid.theta_d) +
-              " x " + std::to_string(grid.phi_d) +
-              " bins; it needs at least one of each, and no more than 2^31 - 1 in all");
+  throw Error(ErrorKind::kRange,
+              "a grid of " + std::to_string(grid.theta_h) + " x " + std::to_string(grid.theta_d) +
+                  " x " + std::to_string(grid.phi_d) +
+                  " bins; it needs at least one of each, and no more than 2^31 - 1 in all")
+      .About("grid of bins");
 }
 
 }  // namespace trilobe

@@ -19,7 +19,9 @@ const T& FindNamed(std::string_view what, std::string_view name, const std::vect
     if (choice.name == name) return choice;
     known += (known.empty() ? "" : ", ") + std::string(choice.name);
   }
-  throw Error("unknown " + std::string(what) + " '" + std::string(name) + "'; known: " + known);
+  throw Error(ErrorKind::kUnknown,
+              "unknown " + std::string(what) + " '" + std::string(name) + "'; known: " + known)
+      .About(what, name);
 }
 
 // Number of character insertions, deletions and replacements that turn one name into the other

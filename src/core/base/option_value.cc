@@ -17,7 +17,8 @@ bool IsIn(const OptionRange& range, const OptionValue& value) {
 
 void CheckInRange(const std::string& name, const OptionValue& value, const OptionRange& range) {
   if (IsIn(range, value)) return;
-  throw Error(name + " is " + ToText(value) + "; it must be " + range.must_be);
+  throw Error(ErrorKind::kRange, name + " is " + ToText(value) + "; it must be " + range.must_be)
+      .About(name, ToText(value));
 }
 
 std::string ToText(const OptionValue& value) {

@@ -10,7 +10,10 @@
 namespace trilobe {
 
 Between OnCircle(double radians, int count) {
-  if (!std::isfinite(radians)) throw Error("a direction or an angle is not a finite number");
+  if (!std::isfinite(radians)) {
+    throw Error(ErrorKind::kRange, "a direction or an angle is not a finite number")
+        .About("radians", radians);
+  }
   CheckNumber("the number of steps around a circle", count, count >= 1, "1 or more");
   const double turns = radians / (2 * kPi);
   const double place = (turns - std::floor(turns)) * count;
@@ -22,7 +25,10 @@ Between OnCircle(double radians, int count) {
 Stencil PointStencil(int index) { return {1, {index}, {1.0}}; }
 
 Stencil LinearStencil(double coordinate, int bins) {
-  if (std::isnan(coordinate)) throw Error("a direction or an angle is not a number");
+  if (std::isnan(coordinate)) {
+    throw Error(ErrorKind::kRange, "a direction or an angle is not a number")
+        .About("coordinate", coordinate);
+  }
   CheckNumber("the number of bins", bins, bins >= 2, "2 or more");
   const double x = std::clamp(coordinate - 0.5, 0.0, bins - 1.0);
   const int i = std::min(static_cast<int>(x), bins - 2);

@@ -49,8 +49,12 @@ class Descriptor {
 // machine.
 constexpr off_t kMaxFileSize = off_t{1} << 30;
 
-[[noreturn]] void FailToRead(const std::string& path, const std::string& reason) {
-  throw Error("cannot read '" + path + "': " + reason);
+// `value` is the reason in a word, for programs; without, it is the system's.
+[[noreturn]] void FailToRead(const std::string& path, const std::string& reason,
+                             const std::string& value = "") {
+  throw Error(ErrorKind::kFile, "cannot read '" + path + "': " + reason)
+      .At(path)
+      .About("read", value.empty() ? reason : value);
 }
 
 // Bytes read, fewer than `size` only at the end of the file; -1 with errno set on failure.
@@ -66,8 +70,11 @@ ssize_t ReadAll(int fd, char* data, size_t size) {
   return static_cast<ssize_t>(done);
 }
 
-[[noreturn]] void FailToWrite(const std::string& path, const std::string& reason) {
-  throw Error("cannot write '" + path + "': " + reason);
+[[noreturn]] void FailToWrite(const std::string& path, const std::string& reason,
+                              const std::string& value = "") {
+  throw Error(ErrorKind::kFile, "cannot write '" + path + "': " + reason)
+      .At(path)
+      .About("write", value.empty() ? reason : value);
 }
 
 // False with errno set if not all bytes could be written.
@@ -170,12 +177,14 @@ std::string ResolveTarget(const std::string& path) {
     FailToWrite(path, path.empty() ? std::strerror(ENOENT) : error.message());
   }
   if (std::filesystem::is_symlink(target)) {
-    FailToWrite(path, "it is a symbolic link to nothing; remove it or make what it names");
+    FailToWrite(path, "it is a symbolic link to nothing; remove it or make what it names",
+                "dangling link");
   }
   struct stat status {};
   if (stat(target.c_str(), &status) != 0) return target;
-  if (S_ISDIR(status.st_mode)) FailToWrite(path, "it is a directory; give the name of a file");
-  if (!S_ISREG(status.st_mode)) FailToWrite(path, "it is not a regular file");
+  if (S_ISDIR(status.st_mode))
+    FailToWrite(path, "it is a directory; give the name of a file", "directory");
+  if (!S_ISREG(status.st_mode)) FailToWrite(path, "it is not a regular file", "not a regular file");
   return target;
 }
 
@@ -186,11 +195,14 @@ std::string ReadFile(const std::string& path) {
   Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (!file.ok() || fstat(file.get(), &status) != 0) FailToRead(path, std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) FailToRead(path, "it is a directory; give the name of a file");
-  if (!S_ISREG(status.st_mode)) FailToRead(path, "it is not a regular file");
+  if (S_ISDIR(status.st_mode))
+    FailToRead(path, "it is a directory; give the name of a file", "directory");
+  if (!S_ISREG(status.st_mode)) FailToRead(path, "it is not a regular file", "not a regular file");
   if (status.st_size > kMaxFileSize) {
-    FailToRead(path, "it has " + std::to_string(status.st_size) +
-                         " bytes, more than any measurement or model (at most 1 GiB)");
+    FailToRead(path,
+               "it has " + std::to_string(status.st_size) +
+                   " bytes, more than any measurement or model (at most 1 GiB)",
+               "size");
   }
   std::string bytes(static_cast<size_t>(status.st_size), '\0');
   const ssize_t count = ReadAll(file.get(), bytes.data(), bytes.size());
@@ -198,7 +210,8 @@ std::string ReadFile(const std::string& path) {
   const ssize_t excess = count < 0 ? -1 : ReadAll(file.get(), &beyond, 1);
   if (excess < 0) FailToRead(path, std::strerror(errno));
   if (count < status.st_size || excess > 0) {
-    FailToRead(path, "its length changed while it was read; try again when it is complete");
+    FailToRead(path, "its length changed while it was read; try again when it is complete",
+               "length");
   }
   return bytes;
 }
@@ -227,7 +240,7 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
   stream.imbue(std::locale::classic());
   stream.exceptions(std::ios::badbit);  // so that lack of memory throws
   write(stream);
-  if (!stream) FailToWrite(path, "its content could not be produced");
+  if (!stream) FailToWrite(path, "its content could not be produced", "content");
 
   TemporaryFile file(target);
   if (!file.ok()) FailToWrite(path, WhyNot(path));
@@ -257,7 +270,7 @@ void CheckWritable(const std::string& path) {
     target = target.parent_path();
   }
   if (!std::filesystem::is_directory(target.parent_path(), error)) {
-    FailToWrite(path, "'" + target.parent_path().string() + "' is not a directory");
+    FailToWrite(path, "'" + target.parent_path().string() + "' is not a directory", "no directory");
   }
   // The size of a model and its report, so that a full disk is detected.
   const std::string bytes(size_t{1} << 18, ' ');
@@ -265,7 +278,8 @@ void CheckWritable(const std::string& path) {
   const bool stays_open = !file.ok() || file.MayBeOpened();
   file.Unlink();  // a signal may end the program at any time
   if (!stays_open) {
-    FailToWrite(path, "nobody could open the file afterwards, by its permissions; run `umask 022`");
+    FailToWrite(path, "nobody could open the file afterwards, by its permissions; run `umask 022`",
+                "permissions");
   }
   if (!file.ok() || !file.Write(bytes)) FailToWrite(path, std::strerror(errno));
 }
@@ -289,7 +303,11 @@ void MakeDirectories(const std::string& path) {
   if (!error && !std::filesystem::is_directory(path, error) && !error) {
     error = std::make_error_code(std::errc::not_a_directory);
   }
-  if (error) throw Error("cannot make the directory '" + path + "': " + error.message());
+  if (error) {
+    throw Error(ErrorKind::kFile, "cannot make the directory '" + path + "': " + error.message())
+        .At(path)
+        .About("make", error.message());
+  }
 }
 
 }  // namespace trilobe

@@ -16,10 +16,18 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 
-void CheckSize(size_t bytes, size_t most, const std::string& what) {
+// The file, and what it is if this error is thrown.
+std::string JsonErrorBegin(const std::string& file, const std::string& otherwise) {
+  return otherwise.empty() ? file : file + ": " + otherwise;
+}
+
+void CheckSize(size_t bytes, size_t most, const std::string& file, const std::string& otherwise) {
   if (bytes > most) {
-    throw Error(what + ": it has " + std::to_string(bytes) + " bytes; at most " +
-                std::to_string(most) + " can be read");
+    throw Error(ErrorKind::kLimit, JsonErrorBegin(file, otherwise) + ": it has " +
+                                       std::to_string(bytes) + " bytes; at most " +
+                                       std::to_string(most) + " can be read")
+        .At(file)
+        .About("bytes", bytes);
   }
 }
 
@@ -27,7 +35,8 @@ void CheckSize(size_t bytes, size_t most, const std::string& what) {
 
 class JsonParser {
  public:
-  JsonParser(std::string_view text, const std::string& what) : text_(text), what_(what) {}
+  JsonParser(std::string_view text, const std::string& file, const std::string& otherwise)
+      : text_(text), file_(file), otherwise_(otherwise) {}
 
   JsonValue ParseText() {
     JsonValue value = ParseValue(0);
@@ -57,11 +66,15 @@ class JsonParser {
  private:
   using Type = JsonValue::Type;
 
-  [[noreturn]] void Fail(const std::string& problem) const {
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind = ErrorKind::kFormat) const {
     const std::string_view before = text_.substr(0, at_);
     const size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
-    throw Error(what_ + ": line " + std::to_string(1 + std::ranges::count(before, '\n')) +
-                ", column " + std::to_string(at_ - line_begin + 1) + ": " + problem);
+    const auto line = static_cast<int>(1 + std::ranges::count(before, '\n'));
+    const std::string column = std::to_string(at_ - line_begin + 1);
+    throw Error(kind, JsonErrorBegin(file_, otherwise_) + ": line " + std::to_string(line) +
+                          ", column " + column + ": " + problem)
+        .At(file_, line)
+        .About("column", column);
   }
 
   char Peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
@@ -75,7 +88,9 @@ class JsonParser {
   void SkipSpace() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
 
   JsonValue ParseValue(int depth) {
-    if (depth > kMaxDepth) Fail("more than " + std::to_string(kMaxDepth) + " levels");
+    if (depth > kMaxDepth) {
+      Fail("more than " + std::to_string(kMaxDepth) + " levels", ErrorKind::kLimit);
+    }
     SkipSpace();
     switch (Peek()) {
       case '{':
@@ -126,7 +141,7 @@ class JsonParser {
     if (std::from_chars(value.text_.data(), value.text_.data() + value.text_.size(), number).ec !=
         std::errc()) {
       at_ = begin;
-      Fail("the number is out of the range of a double");
+      Fail("the number is out of the range of a double", ErrorKind::kRange);
     }
     return value;
   }
@@ -201,29 +216,34 @@ class JsonParser {
     if (!Take('}')) Fail("expected ',' or '}'");
     std::ranges::sort(keys);
     if (const auto twice = std::ranges::adjacent_find(keys); twice != keys.end()) {
-      Fail("the key '" + *twice + "' comes twice in the object that ends here; keep one");
+      Fail("the key '" + *twice + "' comes twice in the object that ends here; keep one",
+           ErrorKind::kConflict);
     }
     return value;
   }
 
   const std::string_view text_;
-  const std::string& what_;
+  const std::string& file_;
+  const std::string& otherwise_;
   size_t at_ = 0;
 };
 
-JsonValue JsonValue::Parse(std::string_view text, const std::string& what,
-                           const JsonLimits& limits) {
-  CheckSize(text.size(), limits.bytes, what);
+JsonValue JsonValue::Parse(std::string_view text, const std::string& file,
+                           const std::string& otherwise, const JsonLimits& limits) {
+  CheckSize(text.size(), limits.bytes, file, otherwise);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   // Each value but the first comes after one of these.
   const auto values = 1 + std::ranges::count_if(text, [](char c) {
                         return c == ',' || c == ':' || c == '[' || c == '{';
                       });
   if (static_cast<size_t>(values) > limits.values) {
-    throw Error(what + ": it has about " + std::to_string(values) + " values; at most " +
-                std::to_string(limits.values) + " can be read");
+    throw Error(ErrorKind::kLimit, JsonErrorBegin(file, otherwise) + ": it has about " +
+                                       std::to_string(values) + " values; at most " +
+                                       std::to_string(limits.values) + " can be read")
+        .At(file)
+        .About("values", values);
   }
-  return JsonParser(text, what).ParseText();
+  return JsonParser(text, file, otherwise).ParseText();
 }
 
 const char* JsonValue::type_name() const {
@@ -237,7 +257,7 @@ double JsonValue::number() const {
   return number;
 }
 
-std::string JsonValue::string() const { return JsonParser(text_, "").ParseString(); }
+std::string JsonValue::string() const { return JsonParser(text_, "", "").ParseString(); }
 
 const JsonValue* JsonValue::Find(std::string_view key) const {
   for (size_t k = 0; k < size(); ++k) {
@@ -246,10 +266,10 @@ const JsonValue* JsonValue::Find(std::string_view key) const {
   return nullptr;
 }
 
-std::string ReadJsonText(const std::string& path, const std::string& what) {
+std::string ReadJsonText(const std::string& path, const std::string& otherwise) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error) CheckSize(size, kMaxJsonBytes, what);
+  if (!error) CheckSize(size, kMaxJsonBytes, path, otherwise);
   return ReadFile(path);
 }
 

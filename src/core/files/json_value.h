@@ -29,10 +29,11 @@ class JsonValue {
   enum class Type { kNull, kBoolean, kNumber, kString, kArray, kObject };
 
   // The one value that the text holds. It keeps views of `text`, which must outlive it.
-  // Throws Error "WHAT: line 3, column 7: ..." if the text is not JSON, and "WHAT: ..." before
-  // anything is allocated if it is beyond the limits above.
-  static JsonValue Parse(std::string_view text, const std::string& what,
-                         const JsonLimits& limits = {});
+  // Throws Error "FILE: OTHERWISE: line 3, column 7: ..." if the text is not JSON, and "FILE:
+  // OTHERWISE: ..." before anything is allocated if it is beyond the limits above. `otherwise` may
+  // say what the file is then, as "not a model file".
+  static JsonValue Parse(std::string_view text, const std::string& file,
+                         const std::string& otherwise = "", const JsonLimits& limits = {});
 
   Type type() const { return type_; }
   const char* type_name() const;  // "null", "boolean", "number", "string", "array", "object"
@@ -59,9 +60,9 @@ class JsonValue {
   std::vector<JsonValue> parts_;  // of an array; of an object, each key before its value
 };
 
-// The text of a file for JsonValue::Parse. Throws Error as ReadFile does, and "WHAT: ..." before it
-// is read if it is beyond the limit above.
-std::string ReadJsonText(const std::string& path, const std::string& what);
+// The text of a file for JsonValue::Parse. Throws Error as ReadFile does, and "PATH: OTHERWISE:
+// ..." before it is read if it is beyond the limit above.
+std::string ReadJsonText(const std::string& path, const std::string& otherwise);
 
 }  // namespace trilobe
 

@@ -8,7 +8,9 @@
 namespace trilobe {
 
 void FailOptionText(std::string_view name, std::string_view text, const std::string& expected) {
-  throw Error("--" + std::string(name) + "=" + std::string(text) + ": give " + expected);
+  throw Error(ErrorKind::kFormat,
+              "--" + std::string(name) + "=" + std::string(text) + ": give " + expected)
+      .About(name, text);
 }
 
 double NumberOfOption(std::string_view name, std::string_view text) {

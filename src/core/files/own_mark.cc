@@ -60,7 +60,7 @@ bool IsOwnObject(const JsonValue& json, std::string_view bytes) {
 bool IsOwnJson(std::string_view bytes) {
   constexpr size_t kMostValues = 8 * kMaxJsonValues;
   try {
-    return IsOwnObject(JsonValue::Parse(bytes, "", {bytes.size(), kMostValues}), bytes);
+    return IsOwnObject(JsonValue::Parse(bytes, "", "", {bytes.size(), kMostValues}), bytes);
   } catch (const Error&) {
     return false;
   }

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "core/base/text.h"
-#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
@@ -61,13 +60,19 @@ bool TextLines::Next() { return Next(/*with_comment=*/false); }
 
 bool TextLines::NextWithComment() { return Next(/*with_comment=*/true); }
 
-void TextLines::Fail(const std::string& problem) const {
-  throw Error(source_ + ": line " + std::to_string(number_) + ": " + problem);
+void TextLines::Fail(const std::string& problem, ErrorKind kind, std::string_view key,
+                     std::string_view value) const {
+  throw Error(kind, source_ + ": line " + std::to_string(number_) + ": " + problem)
+      .At(source_, number_)
+      .About(key, value);
 }
 
-void TextLines::FailAt(size_t column, const std::string& name, const std::string& problem) const {
-  throw Error(source_ + ": line " + std::to_string(number_) + ", column " +
-              std::to_string(column + 1) + " (" + name + "): " + problem);
+void TextLines::FailAt(size_t column, const std::string& name, const std::string& problem,
+                       ErrorKind kind, std::string_view value) const {
+  throw Error(kind, source_ + ": line " + std::to_string(number_) + ", column " +
+                        std::to_string(column + 1) + " (" + name + "): " + problem)
+      .At(source_, number_)
+      .About(name, value);
 }
 
 std::vector<std::string_view> SplitCells(std::string_view line, char separator) {
@@ -112,15 +117,16 @@ std::vector<int> IntegersByX(std::string_view text) {
 double ReadNumber(const TextLines& lines, size_t column, const std::string& name,
                   std::string_view cell) {
   if (const std::optional<double> number = ToNumber(cell)) return *number;
-  lines.FailAt(column, name, Quoted(cell) + " is no number");
+  lines.FailAt(column, name, Quoted(cell) + " is no number", ErrorKind::kFormat, cell);
 }
 
 void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
                  const std::vector<std::string>& names, std::vector<double>* numbers) {
   if (cells.size() != names.size()) {
     lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
-               "; expected " + std::to_string(names.size()) + ", from " + names.front() + " to " +
-               names.back());
+                   "; expected " + std::to_string(names.size()) + ", from " + names.front() +
+                   " to " + names.back(),
+               ErrorKind::kFormat, "columns", std::to_string(cells.size()));
   }
   numbers->resize(cells.size());
   for (size_t k = 0; k < cells.size(); ++k) {
@@ -138,7 +144,7 @@ double ReadAngle(const TextLines& lines, size_t column, const std::string& name,
   problem << number << " is no such angle; expected "
           << (degrees ? "degrees from " : "radians from ") << (degrees ? range.min_deg : min)
           << " to " << (degrees ? range.max_deg : max);
-  lines.FailAt(column, name, problem.str());
+  lines.FailAt(column, name, problem.str(), ErrorKind::kRange, FactText(number));
 }
 
 SphericalAngles ReadAngles(const TextLines& lines, const std::vector<std::string>& names,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trilobe/core/base/directions.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 
@@ -28,9 +29,11 @@ class TextLines {
   int number() const { return number_; }  // of the line, from 1
 
   // Throws Error: "SOURCE: line 12: PROBLEM", "SOURCE: line 12, column 3 (NAME): PROBLEM".
-  [[noreturn]] void Fail(const std::string& problem) const;
-  [[noreturn]] void FailAt(size_t column, const std::string& name,
-                           const std::string& problem) const;  // column from 0
+  // The key of the second is NAME. Columns are from 0.
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind = ErrorKind::kFormat,
+                         std::string_view key = "", std::string_view value = "") const;
+  [[noreturn]] void FailAt(size_t column, const std::string& name, const std::string& problem,
+                           ErrorKind kind = ErrorKind::kFormat, std::string_view value = "") const;
 
  private:
   bool Next(bool with_comment);

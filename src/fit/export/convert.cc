@@ -58,7 +58,9 @@ bool IsShader(const std::string& path) {
 }
 
 std::optional<double> MaxErrorOf(const ConvertOptions& options) {
-  if (!(options.error >= 0 && options.error <= 1)) throw Error("error must be from 0 to 1");
+  if (!(options.error >= 0 && options.error <= 1)) {
+    throw Error(ErrorKind::kRange, "error must be from 0 to 1").About("error", options.error);
+  }
   if (options.error == 0) return std::nullopt;
   return options.error;
 }
@@ -252,8 +254,11 @@ std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::stri
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
                                           const ConvertOptions& options) {
   if (IsShader(path)) {
-    throw Error(path + ": " + measurement.source +
-                " is a measurement, and shaders are made of models; fit it first");
+    throw Error(ErrorKind::kUnsupported,
+                path + ": " + measurement.source +
+                    " is a measurement, and shaders are made of models; fit it first")
+        .At(measurement.source)
+        .About("shader");
   }
   RglExportOptions rgl = RglOptionsOf(options);
   Stopwatch stopwatch;

@@ -214,7 +214,10 @@ Sums OverHalfVectors(const Prepared& model, double max_theta) {
       }
     }
   }
-  if (!(mean > 0)) throw Error("the model is black; there is nothing to match");
+  if (!(mean > 0)) {
+    throw Error(ErrorKind::kData, "the model is black; there is nothing to match")
+        .About("model", "black");
+  }
   // A cube root of around one for a diffuse surface as bright as the model, so that loss and offset
   // mean the same for any.
   const Rgb white = model.diffuse();
@@ -253,7 +256,10 @@ Sums OverSphere(const Prepared& model, double max_theta, const AppearanceOptions
     sums.ends.push_back(static_cast<int>(sums.terms.size()));
     luminance += Luminance(seen);
   }
-  if (!(luminance > 0)) throw Error("the model is black; there is nothing to match");
+  if (!(luminance > 0)) {
+    throw Error(ErrorKind::kData, "the model is black; there is nothing to match")
+        .About("model", "black");
+  }
   sums.exposure = kMeanLuminance * sums.size() / luminance;
   return sums;
 }

@@ -71,7 +71,9 @@ std::vector<FormSpec> NodeLadder(const ModelSpec& spec, int thetas, int phis) {
 
 std::vector<bool> HeldOut(const BrdfSamples& samples, uint64_t seed) {
   if (samples.directions.empty()) {
-    throw Error(samples.source + ": to hold out directions, samples must know theirs");
+    throw ErrorIn(ErrorKind::kMissing, samples.source,
+                  "to hold out directions, samples must know theirs")
+        .About("directions");
   }
   std::vector<bool> held_out;
   held_out.reserve(samples.directions.size());
@@ -87,14 +89,18 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladde
                        const NodeChoiceOptions& options) {
   const Stopwatch since;
   const BrdfSamples& samples = data.samples();
-  if (ladder.empty()) throw Error(samples.source + ": no nodes to choose from");
+  if (ladder.empty()) {
+    throw ErrorIn(ErrorKind::kMissing, samples.source, "no nodes to choose from").About("nodes");
+  }
   CheckNumber("prior", options.prior, options.prior >= 0 && std::isfinite(options.prior),
               "finite and 0 or more");
   std::vector<int> kept, held;
   const std::vector<bool> held_out = HeldOut(samples, options.seed);
   for (int j = 0; j < samples.size(); ++j) (held_out[j] ? held : kept).push_back(j);
   if (kept.empty() || held.empty()) {
-    throw Error(samples.source + ": too few directions to hold out a fifth of them; give nodes");
+    throw ErrorIn(ErrorKind::kData, samples.source,
+                  "too few directions to hold out a fifth of them; give nodes")
+        .About("directions", samples.size());
   }
   const int threads = data.num_threads();
   const auto objective_of = [&](BrdfSamples part) {

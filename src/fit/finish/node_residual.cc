@@ -77,7 +77,11 @@ std::optional<NodeBrdf> InterpolateResidual(const FactorModel& model, const Obje
   for (int j = 0; j < measured.size(); ++j) {
     const SphericalAngles& at = measured.directions[j];
     const auto i = grid.Find(at.theta_i, at.phi_i), o = grid.Find(at.theta_o, at.phi_o);
-    if (!i || !o) throw Error(measured.source + ": a sample is at no node of the prior's grid");
+    if (!i || !o) {
+      throw ErrorIn(ErrorKind::kMismatch, measured.source,
+                    "a sample is at no node of the prior's grid")
+          .About("grid");
+    }
     const size_t index = *i * nodes + *o;
     residual.present[index] = true;
     sample[index] = j;

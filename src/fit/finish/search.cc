@@ -11,7 +11,10 @@ namespace trilobe {
 
 Search::Search(Judge judge, const Rules& rules) : judge_(std::move(judge)), rules_(rules) {
   CheckNotEmpty(judge_, "judge");
-  if (rules_.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
+  if (rules_.max_parameters < 1) {
+    throw Error(ErrorKind::kRange, "a budget of parameters must be at least 1")
+        .About("max_parameters", rules_.max_parameters);
+  }
 }
 
 const Candidate& Search::Try(const std::string& name, const FactorModel& model, int num_parameters,

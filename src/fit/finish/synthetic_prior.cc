@@ -196,10 +196,14 @@ void LowerOvershoot(const SyntheticPrior& prior, const StopCheck& stop, Objectiv
 SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOptions& options) {
   const BrdfSamples& measured = data.samples();
   if (!(options.weight > 0 && std::isfinite(options.weight))) {
-    throw Error(measured.source + ": the weight of a prior must be finite and above 0");
+    throw ErrorIn(ErrorKind::kRange, measured.source,
+                  "the weight of a prior must be finite and above 0")
+        .About("weight", options.weight);
   }
   if (measured.directions.empty()) {
-    throw Error(measured.source + ": a prior needs samples with their directions");
+    throw ErrorIn(ErrorKind::kMissing, measured.source,
+                  "a prior needs samples with their directions")
+        .About("directions");
   }
   PriorKind kind = KindFor(options, data.spec().lobes);
   weight_ = kind.weight;

@@ -197,8 +197,10 @@ class ModelSearch {
     Try("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
     Choose(pruned.model, pruned.layout, objective_.weighting());
     if (search_.has_leader()) return;
-    throw Error("no form of the model keeps to " + std::to_string(options_.max_parameters) +
-                " parameters; its values overflow");
+    throw Error(ErrorKind::kRange, "no form of the model keeps to " +
+                                       std::to_string(options_.max_parameters) +
+                                       " parameters; its values overflow")
+        .About("max_parameters", options_.max_parameters);
   }
 
   // This and what calls it: false once it is to stop; then what was to be fitted is not among

@@ -46,9 +46,10 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
       by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
   if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
       std::isnan(options.max_error) || options.max_parameters < 1) {
-    throw Error(
-        "a budget must be a number, and at least one number must be left to store: check "
-        "max_relative_rise, max_psnr_drop_db, max_error and max_parameters");
+    throw Error(ErrorKind::kRange,
+                "a budget must be a number, and at least one number must be left to store: check "
+                "max_relative_rise, max_psnr_drop_db, max_error and max_parameters")
+        .About("budget");
   }
   if (options.layout) {
     state_.layout = *options.layout;

@@ -81,9 +81,11 @@ Selection Select(const BrdfSamples& samples, const DirectionList& list) {
 
 Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram) {
   if (!(histogram.grid == samples.grid)) {
-    throw Error(histogram.source + ": the histogram has " + Text(histogram.grid) +
-                " bins, but the measurement " + samples.source + " has " + Text(samples.grid) +
-                "; count over theta_h, theta_d, phi_d of the measurement's grid");
+    throw ErrorIn(ErrorKind::kMismatch, histogram.source,
+                  "the histogram has " + Text(histogram.grid) + " bins, but the measurement " +
+                      samples.source + " has " + Text(samples.grid) +
+                      "; count over theta_h, theta_d, phi_d of the measurement's grid")
+        .About("histogram", Text(histogram.grid));
   }
   std::vector<double> reads;
   for (int j = 0; j < samples.size(); ++j) reads.push_back(histogram.counts[BinOf(samples, j)]);
@@ -137,8 +139,9 @@ DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& sou
       "; expected three int32 (theta_h, theta_d and phi_d bins) and then a "
       "float64 for each bin";
   if (bytes.size() < kHeader) {
-    throw Error(source + ": not a histogram: it has " + std::to_string(bytes.size()) + " bytes" +
-                format);
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  "not a histogram: it has " + std::to_string(bytes.size()) + " bytes" + format)
+        .About("bytes", bytes.size());
   }
   int32_t sizes[3];
   double bins = 1;
@@ -146,28 +149,37 @@ DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& sou
     sizes[k] = LoadLittleEndian<int32_t>(bytes.data() + k * sizeof(int32_t));
     bins *= sizes[k];
     if (sizes[k] < 1 || bins > kMaxBins) {
-      throw Error(source + ": not a histogram: it begins with the number of bins " +
-                  std::to_string(sizes[k]) + format);
+      throw ErrorIn(
+          ErrorKind::kFormat, source,
+          "not a histogram: it begins with the number of bins " + std::to_string(sizes[k]) + format)
+          .About("bins", sizes[k]);
     }
   }
   DirectionHistogram histogram{source, {sizes[0], sizes[1], sizes[2]}, {}};
   const size_t expected = kHeader + histogram.grid.size() * sizeof(double);
   if (bytes.size() != expected) {
-    throw Error(source + ": a histogram of " + Text(histogram.grid) + " bins has " +
-                std::to_string(expected) + " bytes, but the file has " +
-                std::to_string(bytes.size()));
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  "a histogram of " + Text(histogram.grid) + " bins has " +
+                      std::to_string(expected) + " bytes, but the file has " +
+                      std::to_string(bytes.size()))
+        .About("bytes", bytes.size());
   }
   bool any = false;
   for (int bin = 0; bin < histogram.grid.size(); ++bin) {
     const auto count = LoadLittleEndian<double>(bytes.data() + kHeader + bin * sizeof(double));
     if (!(count >= 0 && count <= 1e50)) {
-      throw Error(source + ": the count of bin " + std::to_string(bin) + " is " +
-                  std::to_string(count) + "; counts must be from 0 to 1e50");
+      throw ErrorIn(ErrorKind::kRange, source,
+                    "the count of bin " + std::to_string(bin) + " is " + std::to_string(count) +
+                        "; counts must be from 0 to 1e50")
+          .About("bin " + std::to_string(bin), count);
     }
     any = any || count > 0;
     histogram.counts.push_back(count);
   }
-  if (!any) throw Error(source + ": all counts are 0, so no direction would be used");
+  if (!any) {
+    throw ErrorIn(ErrorKind::kData, source, "all counts are 0, so no direction would be used")
+        .About("counts");
+  }
   return histogram;
 }
 
@@ -176,8 +188,9 @@ BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& direc
   const Selection selection =
       std::visit([&](const auto& form) { return Select(samples, form); }, directions);
   if (selection.numbers.empty()) {
-    throw Error(samples.source +
-                ": no valid sample lies in the directions that the scene uses; widen them");
+    throw ErrorIn(ErrorKind::kData, samples.source,
+                  "no valid sample lies in the directions that the scene uses; widen them")
+        .About("directions");
   }
   BrdfSamples used = Selected(samples, selection.numbers);
   if (!selection.reads.empty()) {

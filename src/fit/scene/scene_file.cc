@@ -41,8 +41,11 @@ class Node {
   Node(const JsonValue& json, std::string pointer, const std::string& file)
       : json_(json), pointer_(std::move(pointer)), file_(file) {}
 
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(file_ + ": " + (pointer_.empty() ? "/" : pointer_) + ": " + problem);
+  // Throws Error about the pointer.
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind = ErrorKind::kRange,
+                         std::string_view value = "") const {
+    const std::string pointer = pointer_.empty() ? "/" : pointer_;
+    throw ErrorIn(kind, file_, pointer + ": " + problem).About(pointer, value);
   }
 
   bool is_string() const { return json_.type() == Type::kString; }
@@ -53,7 +56,9 @@ class Node {
 
   Node operator[](const char* key) const {
     const JsonValue* const found = json_.Find(key);
-    if (found == nullptr) Fail("the key '" + std::string(key) + "' is missing; add it");
+    if (found == nullptr) {
+      Fail("the key '" + std::string(key) + "' is missing; add it", ErrorKind::kMissing, key);
+    }
     return {*found, pointer_ + "/" + key, file_};
   }
   Node operator[](size_t index) const {
@@ -72,7 +77,8 @@ class Node {
       }
       Node(json_[k], pointer_ + "/" + Escaped(key), file_)
           .Fail("unknown key; did you mean '" + std::string(NearestName(key, known)) +
-                "'? Known here: " + list);
+                    "'? Known here: " + list,
+                ErrorKind::kUnknown, key);
     }
     return *this;
   }
@@ -97,8 +103,8 @@ class Node {
     const double value = json_.number();
     if (!(min <= value && value <= max)) {
       Fail("must be " + meaning + ", from " + Text(min, 6) +
-           (std::isfinite(max) ? " to " + Text(max, 6) : " up") + ", not " +
-           std::string(json_.number_text()));
+               (std::isfinite(max) ? " to " + Text(max, 6) : " up") + ", not " + NumberText(),
+           ErrorKind::kRange, NumberText());
     }
     return value;
   }
@@ -114,14 +120,17 @@ class Node {
     for (const std::string_view each : known) {
       list += (list.empty() ? "" : " or ") + Quoted(std::string(each));
     }
-    Fail("must be " + list + ", not " + Quoted(word));
+    Fail("must be " + list + ", not " + Quoted(word), ErrorKind::kUnknown, word);
   }
 
  private:
   using Type = JsonValue::Type;
 
   void CheckType(Type type, const std::string& expected) const {
-    if (json_.type() != type) Fail("must be " + expected + ", not " + json_.type_name());
+    if (json_.type() != type) {
+      Fail("must be " + expected + ", not " + json_.type_name(), ErrorKind::kFormat,
+           json_.type_name());
+    }
   }
 
   const JsonValue& json_;
@@ -129,7 +138,7 @@ class Node {
   const std::string& file_;
 };
 
-std::string NotAScene(const std::string& path) { return path + ": not a scene file"; }
+constexpr const char* kNotAScene = "not a scene file";
 
 std::string Beside(const std::string& scene_file, const std::string& path) {
   return (std::filesystem::path(scene_file).parent_path() / path).string();
@@ -148,7 +157,7 @@ DirectionRanges::Range ReadRange(const Node& node) {
 
 DirectionList ReadList(const Node& node) {
   node.CheckArray("directions");
-  if (node.size() == 0) node.Fail("is empty; give at least one direction");
+  if (node.size() == 0) node.Fail("is empty; give at least one direction", ErrorKind::kMissing);
   DirectionList list;
   for (size_t k = 0; k < node.size(); ++k) {
     const Node entry = node[k].CheckObject({"theta_i", "theta_o", "phi"});
@@ -171,7 +180,7 @@ DirectionHistogram ReadHistogram(const Node& node, const std::string& scene_file
   try {
     return ParseHistogram(ReadFile(path), path);
   } catch (const Error& error) {
-    node.Fail(error.what());
+    node.Fail(error.what(), error.kind(), error.facts().value);
   }
 }
 
@@ -247,7 +256,7 @@ void ReadOption(const Node& node, const Row& option, const Set& set,
   try {
     set(FlagText(value));
   } catch (const Error& error) {
-    value.Fail(error.what());
+    value.Fail(error.what(), error.kind(), error.facts().value);
   }
   (*options)[option.name] = FlagText(value);
 }
@@ -301,10 +310,13 @@ std::string ReadName(const Node& node) {
   if (name.empty() || name.size() > kMaxNameSize || name.front() == '.' ||
       name.find('/') != std::string::npos || std::ranges::any_of(name, is_control)) {
     node.Fail("is the name of a file, too: 1 to " + std::to_string(kMaxNameSize) +
-              " bytes, no '/', no control character, no '.' in front");
+                  " bytes, no '/', no control character, no '.' in front",
+              ErrorKind::kFormat, name);
   }
   // NAME.json is written beside plan.json; some file systems take Plan for plan.
-  if (LowerCase(name) == "plan") node.Fail("is kept for plan.json; give the material another name");
+  if (LowerCase(name) == "plan") {
+    node.Fail("is kept for plan.json; give the material another name", ErrorKind::kConflict, name);
+  }
   return name;
 }
 
@@ -314,7 +326,7 @@ std::string ReadSource(const Node& node, const std::string& scene_file) {
     try {
       SynthSourceOf(source);
     } catch (const Error& error) {
-      node.Fail(error.what());
+      node.Fail(error.what(), error.kind(), error.facts().value);
     }
     return source;
   }
@@ -322,7 +334,7 @@ std::string ReadSource(const Node& node, const std::string& scene_file) {
     try {
       MaterialText(source);
     } catch (const Error& error) {
-      node.Fail(error.what());
+      node.Fail(error.what(), error.kind(), error.facts().value);
     }
     return source;
   }
@@ -330,7 +342,8 @@ std::string ReadSource(const Node& node, const std::string& scene_file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(source, ignored)) {
     node.Fail("there is no file " + Quoted(source) +
-              "; give a path relative to the scene file, synth:NAME or material:NAME");
+                  "; give a path relative to the scene file, synth:NAME or material:NAME",
+              ErrorKind::kFile, source);
   }
   return source;
 }
@@ -348,7 +361,7 @@ SceneMaterial ReadMaterial(const Node& node, const std::string& scene_file,
 }  // namespace
 
 Scene ParseScene(std::string_view text, const std::string& path) {
-  const JsonValue json = JsonValue::Parse(text, NotAScene(path));
+  const JsonValue json = JsonValue::Parse(text, path, kNotAScene);
   const Node root(json, "", path);
   root.CheckObject({"format", "version", "directions", "channels", "budget", "leave_out", "options",
                     "materials"});
@@ -358,7 +371,9 @@ Scene ParseScene(std::string_view text, const std::string& path) {
   ReadLimits(root, path, &defaults);
   const Node materials = root["materials"];
   materials.CheckArray("materials");
-  if (materials.size() == 0) materials.Fail("is empty; give at least one material");
+  if (materials.size() == 0) {
+    materials.Fail("is empty; give at least one material", ErrorKind::kMissing);
+  }
   Scene scene{path, {}};
   std::map<std::string, std::string> name_of;  // by the file, where case does not count
   for (size_t k = 0; k < materials.size(); ++k) {
@@ -410,8 +425,8 @@ FitOptions WithOptionsOf(const SceneMaterial& material, FitOptions options) {
 }
 
 Scene ReadScene(const std::string& path) {
-  CheckMayBeJson(BeginningOf(path), NotAScene(path));
-  return ParseScene(ReadJsonText(path, NotAScene(path)), path);
+  CheckMayBeJson(BeginningOf(path), path, kNotAScene);
+  return ParseScene(ReadJsonText(path, kNotAScene), path);
 }
 
 }  // namespace trilobe

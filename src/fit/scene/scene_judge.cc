@@ -78,7 +78,9 @@ BrdfSamples LuminanceOf(BrdfSamples samples) {
 FactorModel LuminanceOf(const FactorModel& model) {
   ModelSpec spec = model.spec();
   if (spec.D.per_channel || spec.G.per_channel) {
-    throw Error("a model whose D or G differ between the channels has no luminance of its form");
+    throw Error(ErrorKind::kUnsupported,
+                "a model whose D or G differ between the channels has no luminance of its form")
+        .About("luminance");
   }
   spec.F = {.per_lobe = true, .per_channel = false};
   FactorModel grey(spec);

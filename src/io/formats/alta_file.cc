@@ -96,7 +96,9 @@ size_t ReadAltaCount(const TextLines& lines, std::string_view word, int most) {
 void CheckAltaHeader(const TextLines& lines, const std::map<std::string, std::string>& seen,
                      size_t numbers, const AltaHeader& header) {
   for (const char* const key : {"#DIM", "#PARAM_IN", "#PARAM_OUT"}) {
-    if (!seen.contains(key)) lines.Fail(std::string("the header before it has no ") + key);
+    if (!seen.contains(key)) {
+      lines.Fail(std::string("the header before it has no ") + key, ErrorKind::kMissing, key);
+    }
   }
   if (header.input == nullptr) {
     std::string known;
@@ -104,7 +106,8 @@ void CheckAltaHeader(const TextLines& lines, const std::map<std::string, std::st
       known.append(known.empty() ? "" : ", ").append(input.name);
     }
     lines.Fail("PARAM_IN is " + seen.at("#PARAM_IN").substr(0, 40) +
-               "; only what names both directions can be read: " + known);
+                   "; only what names both directions can be read: " + known,
+               ErrorKind::kUnsupported, "#PARAM_IN", seen.at("#PARAM_IN"));
   }
   const bool is_color = header.output == "RGB_COLOR" || header.output == "XYZ_COLOR";
   if (!is_color && !header.output.starts_with("INV_STERADIAN")) {
@@ -115,9 +118,10 @@ void CheckAltaHeader(const TextLines& lines, const std::map<std::string, std::st
   if (numbers != header.input->numbers.size() ||
       (header.values != 3 && (is_color || header.values != 1))) {
     lines.Fail("DIM is " + seen.at("#DIM").substr(0, 40) + ", and " +
-               std::string(header.input->name) + " has " +
-               std::to_string(header.input->numbers.size()) + " numbers, " + header.output +
-               (is_color ? " 3" : " 1 or 3"));
+                   std::string(header.input->name) + " has " +
+                   std::to_string(header.input->numbers.size()) + " numbers, " + header.output +
+                   (is_color ? " 3" : " 1 or 3"),
+               ErrorKind::kMismatch, "#DIM", seen.at("#DIM"));
   }
 }
 
@@ -155,14 +159,16 @@ AltaHeader ReadAltaHeader(TextLines* lines) {
     } else if ((key == "#ENDIAN" && word != "little") ||
                (key == "#PRECISION" && word != "ieee754-double")) {
       lines->Fail(key.substr(1) + " is " + std::string(word.substr(0, 40)) +
-                  "; only ieee754-double and little can be read");
+                      "; only ieee754-double and little can be read",
+                  ErrorKind::kUnsupported, key, word);
     }
   }
   CheckAltaHeader(*lines, seen, numbers, header);
   if (header.is_binary && (lines->line() != kStream || !header.samples)) {
-    lines->Fail("the header of a binary file has no SAMPLE_COUNT or no BEGIN_STREAM");
+    lines->Fail("the header of a binary file has no SAMPLE_COUNT or no BEGIN_STREAM",
+                ErrorKind::kMissing, "#SAMPLE_COUNT");
   }
-  if (!more) lines->Fail("the file ends before its first sample");
+  if (!more) lines->Fail("the file ends before its first sample", ErrorKind::kMissing, "samples");
   return header;
 }
 
@@ -205,7 +211,8 @@ void ReadAltaText(const AltaHeader& header, TextLines* lines, SampleCollector* c
     const auto words = SplitWords(lines->line());
     if (words.size() < needed || words.size() > most) {
       lines->Fail(std::to_string(words.size()) + " numbers; expected " + std::to_string(needed) +
-                  (most > needed ? " to " + std::to_string(most) : "") + ", as DIM says");
+                      (most > needed ? " to " + std::to_string(most) : "") + ", as DIM says",
+                  ErrorKind::kFormat, "columns", std::to_string(words.size()));
     }
     row.clear();
     for (size_t k = 0; k < needed; ++k) {
@@ -214,7 +221,7 @@ void ReadAltaText(const AltaHeader& header, TextLines* lines, SampleCollector* c
           ReadNumber(*lines, k, is_input ? header.input->numbers[k] : header.output, words[k]));
     }
     const auto fail = [&](size_t k, const std::string& name, const std::string& problem) {
-      lines->FailAt(k, name, problem);
+      lines->FailAt(k, name, problem, ErrorKind::kRange, words[k]);
     };
     AddAltaRow(header, row.data(), fail, collector);
   }
@@ -228,8 +235,10 @@ void ReadAltaStream(const AltaHeader& header, std::string_view bytes, const std:
   const size_t size = numbers * sizeof(double);
   const size_t most = bytes.size() / size;
   if (!(*header.samples >= 0 && *header.samples <= static_cast<double>(most))) {
-    throw Error(source + ": truncated: " + std::to_string(bytes.size()) +
-                " bytes of samples, and its header announces more; get it once more");
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  "truncated: " + std::to_string(bytes.size()) +
+                      " bytes of samples, and its header announces more; get it once more")
+        .About("SAMPLE_COUNT", *header.samples);
   }
   std::vector<double> row(numbers);
   for (size_t j = 0; j < static_cast<size_t>(*header.samples); ++j) {
@@ -237,8 +246,10 @@ void ReadAltaStream(const AltaHeader& header, std::string_view bytes, const std:
       row[k] = LoadLittleEndian<double>(bytes.data() + j * size + k * sizeof(double));
     }
     const auto fail = [&](size_t k, const std::string& name, const std::string& problem) {
-      throw Error(source + ": sample " + std::to_string(j + 1) + ", number " +
-                  std::to_string(k + 1) + " (" + name + "): " + problem);
+      throw ErrorIn(ErrorKind::kFormat, source,
+                    "sample " + std::to_string(j + 1) + ", number " + std::to_string(k + 1) + " (" +
+                        name + "): " + problem)
+          .About(name, j + 1);
     };
     AddAltaRow(header, row.data(), fail, collector);
   }

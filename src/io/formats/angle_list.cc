@@ -20,9 +20,13 @@ std::vector<double> ReadAngleList(const AngleList& list, std::string_view count_
   const std::optional<double> count = ToNumber(count_text);
   constexpr double kMost = 10000;
   if (!count || !(*count >= 1 && *count <= kMost) || *count != std::floor(*count)) {
-    lines->Fail(std::string("expected the number of angles after ") + list.key);
+    lines->Fail(std::string("expected the number of angles after ") + list.key, ErrorKind::kFormat,
+                list.key);
   }
-  if (!lines->Next()) lines->Fail(std::string("the angles of ") + list.key + " are missing");
+  if (!lines->Next()) {
+    lines->Fail(std::string("the angles of ") + list.key + " are missing", ErrorKind::kMissing,
+                list.key);
+  }
   std::vector<double> angles = ReadNumbersOfLine(*lines, static_cast<size_t>(*count), list.key);
   for (size_t k = 0; k < angles.size(); ++k) {
     std::ostringstream problem;
@@ -34,7 +38,7 @@ std::vector<double> ReadAngleList(const AngleList& list, std::string_view count_
     } else {
       continue;
     }
-    lines->FailAt(k, list.key, problem.str());
+    lines->FailAt(k, list.key, problem.str(), ErrorKind::kRange, FactText(angles[k]));
   }
   return angles;
 }

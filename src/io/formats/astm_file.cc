@@ -41,7 +41,7 @@ Columns ReadVars(const TextLines& lines, std::string_view vars) {
   const auto find = [&](const char* name) {
     const auto found = static_cast<size_t>(std::ranges::find(names, name) - names.begin());
     if (found == names.size()) {
-      lines.Fail(std::string("VARS has no ") + name + "; " + kExpected);
+      lines.Fail(std::string("VARS has no ") + name + "; " + kExpected, ErrorKind::kMissing, name);
     }
     is_angle[found] = true;
     return found;
@@ -58,7 +58,8 @@ Columns ReadVars(const TextLines& lines, std::string_view vars) {
     const char* const channels[kChannels] = {"R", "G", "B"};
     for (int c = 0; c < kChannels; ++c) columns.values[c] = find(channels[c]);
   } else if (n == 0 || columns.wavelengths.size() != n) {
-    lines.Fail("VARS names " + std::to_string(n) + " values that are no colour; " + kExpected);
+    lines.Fail("VARS names " + std::to_string(n) + " values that are no colour; " + kExpected,
+               ErrorKind::kUnknown, "VARS", std::to_string(n));
   }
   return columns;
 }
@@ -72,7 +73,7 @@ Header ReadHeader(TextLines* lines, const std::string& source) {
     if (key == "NUM_POINTS") {
       const auto words = SplitWords(value);
       if (words.size() != 1 || !ToNumber(words[0])) {
-        lines->Fail("expected one number after NUM_POINTS");
+        lines->Fail("expected one number after NUM_POINTS", ErrorKind::kFormat, "NUM_POINTS");
       }
       header.points = words[0];
     } else if (key == "VARS") {
@@ -80,7 +81,9 @@ Header ReadHeader(TextLines* lines, const std::string& source) {
       return header;
     }
   }
-  throw Error(source + ": no line VARS, which names the columns; " + kExpected);
+  throw ErrorIn(ErrorKind::kMissing, source,
+                std::string("no line VARS, which names the columns; ") + kExpected)
+      .About("VARS");
 }
 
 // Angle-resolved scatter in the text format of ASTM E1392-96, as Cornell published measurements in
@@ -112,8 +115,10 @@ Measurement ParseAstm(std::string_view text, const std::string& source,
     ++read;
   }
   if (!points.empty() && *ToNumber(points) != read) {
-    throw Error(source + ": " + std::to_string(read) + " lines of data, and NUM_POINTS announces " +
-                points + "; get the file once more");
+    throw ErrorIn(ErrorKind::kMismatch, source,
+                  std::to_string(read) + " lines of data, and NUM_POINTS announces " + points +
+                      "; get the file once more")
+        .About("NUM_POINTS", points);
   }
   Measurement measurement = collector.TakeByAzimuths();
   if (!bands) return measurement;

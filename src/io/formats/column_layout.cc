@@ -54,13 +54,14 @@ class ColumnLayouter {
 
   [[noreturn]] void FailAsTheSame(size_t one, size_t other) const {
     lines_.Fail("the header has " + std::to_string(layout_.columns.size()) + " columns, and '" +
-                layout_.columns[one].name + "' and '" + layout_.columns[other].name +
-                "' say the same; --columns=" + kUsualColumns +
-                " names those to read, - the others");
+                    layout_.columns[one].name + "' and '" + layout_.columns[other].name +
+                    "' say the same; --columns=" + kUsualColumns +
+                    " names those to read, - the others",
+                ErrorKind::kConflict, layout_.columns[one].name, layout_.columns[other].name);
   }
 
   [[noreturn]] void FailWithout(const std::string& column, const std::string& advice) const {
-    lines_.Fail("the header has no column " + column + advice);
+    lines_.Fail("the header has no column " + column + advice, ErrorKind::kMissing, column);
   }
 
   void LayAngles(const GivenAngles& given) {
@@ -95,8 +96,9 @@ class ColumnLayouter {
   // [rad]
   double UnitOf(const TableColumn& column) const {
     if (const auto radians = RadiansIn(column.unit)) return *radians;
-    lines_.Fail("column '" + column.name +
-                "' is neither in degrees nor in radians or gon; convert it");
+    lines_.Fail(
+        "column '" + column.name + "' is neither in degrees nor in radians or gon; convert it",
+        ErrorKind::kUnsupported, column.name, column.unit);
   }
 
   void LayValues(bool prefers_bands, bool may_lack) {
@@ -132,7 +134,8 @@ class ColumnLayouter {
       const TableColumn& column = layout_.columns[k];
       if (!IsOneOf(column.unit, kNoBrdf)) continue;
       lines_.Fail("column '" + column.name + "' is in " + column.unit +
-                  ", and a BRDF is in 1/sr; convert it");
+                      ", and a BRDF is in 1/sr; convert it",
+                  ErrorKind::kUnsupported, column.name, column.unit);
     }
   }
 

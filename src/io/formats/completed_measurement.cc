@@ -136,7 +136,9 @@ CompletedMeasurement Complete(const Measurement& measurement, const FactorModel&
   const auto prepared = std::make_shared<const PreparedModel<double>>(model);
   if (!measurement.table) return CompleteScattered(measurement, prepared);
   if (prepared->anisotropic()) {
-    throw Error(measurement.source + ": a table knows no azimuths, which an anisotropic model has");
+    throw ErrorIn(ErrorKind::kUnsupported, measurement.source,
+                  "a table knows no azimuths, which an anisotropic model has")
+        .About("anisotropic");
   }
   return CompleteTable(*measurement.table, prepared, num_threads);
 }

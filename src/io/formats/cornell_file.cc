@@ -16,27 +16,34 @@ std::vector<double> ReadWavelengths(TextLines* lines, const std::string& source)
   constexpr double kMost = 10000;
   const auto number = [&](std::string_view word, size_t column, const char* name) {
     const std::optional<double> value = ToNumber(word);
-    if (!value) lines->FailAt(column, name, "expected a number");
+    if (!value) lines->FailAt(column, name, "expected a number", ErrorKind::kFormat, word);
     return *value;
   };
-  if (!lines->Next()) throw Error(source + ": no line; expected the number of wavelengths");
+  if (!lines->Next()) {
+    throw ErrorIn(ErrorKind::kMissing, source, "no line; expected the number of wavelengths")
+        .About("wavelengths");
+  }
   const double count = number(lines->line(), 0, "number of wavelengths");
   if (!(count >= 1 && count <= kMost && count == static_cast<int>(count))) {
-    lines->Fail("expected the number of wavelengths, from 1 to 10000");
+    lines->Fail("expected the number of wavelengths, from 1 to 10000", ErrorKind::kFormat,
+                "wavelengths");
   }
   std::vector<double> wavelengths;
   while (wavelengths.size() < static_cast<size_t>(count)) {
     if (!lines->Next()) {
-      throw Error(source + ": the file ends after " + std::to_string(wavelengths.size()) + " of " +
-                  std::to_string(static_cast<int>(count)) + " wavelengths");
+      throw ErrorIn(ErrorKind::kFormat, source,
+                    "the file ends after " + std::to_string(wavelengths.size()) + " of " +
+                        std::to_string(static_cast<int>(count)) + " wavelengths")
+          .About("wavelengths", wavelengths.size());
     }
     const auto words = SplitWords(lines->line());
     for (size_t k = 0; k < words.size(); ++k) {
       wavelengths.push_back(number(words[k], k, "wavelength"));
     }
     if (wavelengths.size() > static_cast<size_t>(count)) {
-      lines->Fail("more wavelengths than the " + std::to_string(static_cast<int>(count)) +
-                  " announced");
+      lines->Fail(
+          "more wavelengths than the " + std::to_string(static_cast<int>(count)) + " announced",
+          ErrorKind::kMismatch, "wavelengths", std::to_string(wavelengths.size()));
     }
   }
   return wavelengths;

@@ -45,7 +45,7 @@ ExportedBrdf ExportedModel(const FactorModel& model, double max_theta) {
 
 ExportError MeasureError(const PairBrdf& file,
                          const std::vector<CompletedMeasurement::Place>& places) {
-  if (places.empty()) throw Error("there is no light to write");
+  if (places.empty()) throw Error(ErrorKind::kData, "there is no light to write").About("light");
   std::vector<double> errors;
   for (const CompletedMeasurement::Place& place : places) {
     errors.push_back(RelativeDistance(file(place.at), place.measured));
@@ -79,7 +79,7 @@ void RequireExact(size_t bytes, double median_error, double max_error) {
   message << "no file is exact enough: one of " << static_cast<double>(bytes) / 1e6
           << " MB is off by " << 100 * median_error << " % in the median, where " << 100 * max_error
           << " % is asked for; allow a larger error";
-  throw Error(message.str());
+  throw Error(ErrorKind::kLimit, message.str()).About("max_error", max_error);
 }
 
 }  // namespace trilobe

@@ -30,7 +30,9 @@ FredOptions ReadFredFormat(const TextLines& lines) {
       format.unit = value == "deg" ? kPi / 180 : 1;
     } else if (key == "scale") {
       format.scale = ReadNumber(lines, k, key, value);
-      if (!(format.scale > 0 && format.scale < 1e12)) lines.FailAt(k, key, "expected a scale");
+      if (!(format.scale > 0 && format.scale < 1e12)) {
+        lines.FailAt(k, key, "expected a scale", ErrorKind::kRange);
+      }
     } else if (key != "bsdf" || value != "value") {
       lines.FailAt(k, "format",
                    std::string("'")
@@ -69,16 +71,22 @@ Measurement ParseFred(std::string_view text, const std::string& source) {
     const auto words = SplitWords(lines.line());
     if (words[0] == "type") {
       has_type = words.size() == 2 && words[1] == kFredType;
-      if (!has_type) lines.Fail("expected type " + std::string(kFredType));
+      if (!has_type) {
+        lines.Fail("expected type " + std::string(kFredType), ErrorKind::kFormat, "type");
+      }
       continue;
     }
-    if (!has_type) lines.Fail("expected type " + std::string(kFredType) + " before all else");
+    if (!has_type) {
+      lines.Fail("expected type " + std::string(kFredType) + " before all else",
+                 ErrorKind::kMissing, "type");
+    }
     if (words[0] == "format") {
       format = ReadFredFormat(lines);
       continue;
     }
     if (words.size() != 2 && words.size() != 3) {
-      lines.Fail("expected theta and phi of the incidence, or theta, phi and the BSDF");
+      lines.Fail("expected theta and phi of the incidence, or theta, phi and the BSDF",
+                 ErrorKind::kFormat, "columns", std::to_string(words.size()));
     }
     ReadNumbers(lines, words,
                 words.size() == 2 ? std::vector<std::string>{"theta", "phi"}
@@ -88,14 +96,18 @@ Measurement ParseFred(std::string_view text, const std::string& source) {
     if (words.size() == 2) {
       incidence = angles;
     } else if (!incidence) {
-      lines.Fail("expected a line of theta and phi of the incidence before its values");
+      lines.Fail("expected a line of theta and phi of the incidence before its values",
+                 ErrorKind::kMissing, "incidence");
     } else {
       const double value = numbers[2] * format.scale;
       collector.Add({incidence->theta, incidence->phi + kPi, angles.theta, angles.phi},
                     {value, value, value});
     }
   }
-  if (!incidence) lines.Fail("the file ends before the first direction of incidence");
+  if (!incidence) {
+    lines.Fail("the file ends before the first direction of incidence", ErrorKind::kMissing,
+               "incidence");
+  }
   return collector.TakeByAzimuths();
 }
 

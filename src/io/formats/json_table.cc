@@ -45,9 +45,10 @@ std::string Rows(const JsonValue& columns, const std::string& source) {
     if (columns[k].type() == Type::kArray) listed.push_back(k);
   }
   if (listed.empty()) {
-    throw Error(source +
-                ": this is JSON without lists of columns in its outermost object; make it "
-                "{\"theta_i\": [...], \"theta_o\": [...], \"brdf\": [...]}");
+    throw ErrorIn(ErrorKind::kMissing, source,
+                  "this is JSON without lists of columns in its outermost object; make it "
+                  "{\"theta_i\": [...], \"theta_o\": [...], \"brdf\": [...]}")
+        .About("columns");
   }
   std::string text;
   for (const size_t k : listed) {
@@ -60,9 +61,11 @@ std::string Rows(const JsonValue& columns, const std::string& source) {
   const size_t count = columns[listed.front()].size();
   for (const size_t k : listed) {
     if (columns[k].size() == count) continue;
-    throw Error(source + ": '" + columns.key(k) + "' lists " + std::to_string(columns[k].size()) +
-                " values, and '" + columns.key(listed.front()) + "' " + std::to_string(count) +
-                "; columns are of one length");
+    throw ErrorIn(ErrorKind::kMismatch, source,
+                  "'" + columns.key(k) + "' lists " + std::to_string(columns[k].size()) +
+                      " values, and '" + columns.key(listed.front()) + "' " +
+                      std::to_string(count) + "; columns are of one length")
+        .About(columns.key(k), columns[k].size());
   }
   for (size_t row = 0; row < count; ++row) {
     for (const size_t k : listed) {
@@ -79,7 +82,7 @@ Measurement ReadColumns(std::string_view text, const std::string& source,
                         const SourceOptions& options) {
   // A row of values takes 56 bytes each.
   constexpr JsonLimits kLimits = {.bytes = size_t{1} << 26, .values = size_t{1} << 22};
-  const JsonValue columns = JsonValue::Parse(text, source, kLimits);
+  const JsonValue columns = JsonValue::Parse(text, source, "", kLimits);
   Measurement measurement = ReadTextTable(Rows(columns, source), source, options);
   measurement.kind = "JSON file of scattered samples";
   return measurement;

@@ -34,7 +34,8 @@ struct LightToolsBlock {
 [[noreturn]] void FailAtLightToolsWord(const TextLines& lines, std::string_view key,
                                        std::string_view word, const char* known) {
   lines.Fail(std::string(key) + " is " + std::string(word.substr(0, 40)) + "; only " + known +
-             " can be read");
+                 " can be read",
+             ErrorKind::kUnsupported, key, word);
 }
 
 // Reads up to the line DataBegin.
@@ -45,11 +46,16 @@ LightToolsHeader ReadLightToolsHeader(TextLines* lines) {
     if (words[0] == "DataBegin") {
       for (const auto& [angles, list] :
            {std::pair(&header.azimuths, &kAzimuths), std::pair(&header.radials, &kRadials)}) {
-        if (angles->empty()) lines->Fail(std::string("the header has no ") + list->key);
+        if (angles->empty()) {
+          lines->Fail(std::string("the header has no ") + list->key, ErrorKind::kMissing,
+                      list->key);
+        }
       }
       return header;
     }
-    if (words.size() != 2) lines->Fail("expected a key and its value, or DataBegin");
+    if (words.size() != 2) {
+      lines->Fail("expected a key and its value, or DataBegin", ErrorKind::kFormat, "DataBegin");
+    }
     if (words[0] == kAzimuths.key) {
       header.azimuths = ReadAngleList(kAzimuths, words[1], lines);
     } else if (words[0] == kRadials.key) {
@@ -62,10 +68,11 @@ LightToolsHeader ReadLightToolsHeader(TextLines* lines) {
     } else if (words[0] == "Symmetry") {
       if (words[1] != "Asymmetric") FailAtLightToolsWord(*lines, words[0], words[1], "Asymmetric");
     } else if (words[0] != "Source") {
-      lines->Fail(std::string("'").append(words[0].substr(0, 40)) + "' is no key of this format");
+      lines->Fail(std::string("'").append(words[0].substr(0, 40)) + "' is no key of this format",
+                  ErrorKind::kUnknown, "header", words[0]);
     }
   }
-  lines->Fail("the file ends before DataBegin");
+  lines->Fail("the file ends before DataBegin", ErrorKind::kMissing, "DataBegin");
 }
 
 // Which of the two the word is: 0 or 1.
@@ -104,7 +111,8 @@ void SetLightToolsKey(const TextLines& lines, size_t column, std::string_view ke
     const double value = number();
     if (key == "Wavelength") block->band = value;
   } else {
-    lines.Fail(std::string("'").append(key.substr(0, 40)) + "' is no key of a block of data");
+    lines.Fail(std::string("'").append(key.substr(0, 40)) + "' is no key of a block of data",
+               ErrorKind::kUnknown, "block", key);
   }
 }
 
@@ -114,13 +122,15 @@ std::optional<LightToolsBlock> ReadLightToolsBlock(const LightToolsHeader& heade
                                                    TextLines* lines) {
   LightToolsBlock block;
   const auto next = [&] {
-    if (!lines->Next()) lines->Fail("the file ends before DataEnd");
+    if (!lines->Next()) lines->Fail("the file ends before DataEnd", ErrorKind::kMissing, "DataEnd");
     return SplitWords(lines->line());
   };
   for (bool has_begun = false, is_whole = false; !is_whole; has_begun = true) {
     const auto words = next();
     if (!has_begun && words[0] == "DataEnd") return std::nullopt;
-    if (words.size() % 2 != 0) lines->Fail("expected keys and their values, as AOI 20");
+    if (words.size() % 2 != 0) {
+      lines->Fail("expected keys and their values, as AOI 20", ErrorKind::kFormat, "block");
+    }
     for (size_t k = 0; k < words.size(); k += 2) {
       SetLightToolsKey(*lines, k + 1, words[k], words[k + 1], &block);
       is_whole = is_whole || words[k] == "TIS";
@@ -133,7 +143,8 @@ std::optional<LightToolsBlock> ReadLightToolsBlock(const LightToolsHeader& heade
       block.values.push_back(ReadNumber(*lines, k, "BRDF by ScatterRadial", words[k]));
     }
     if (block.values.size() > size) {
-      lines->Fail("more values than the " + std::to_string(size) + " of a block");
+      lines->Fail("more values than the " + std::to_string(size) + " of a block",
+                  ErrorKind::kMismatch, "block");
     }
   }
   return block;
@@ -155,10 +166,14 @@ LightToolsBlocks ReadLightToolsBlocks(const LightToolsHeader& header, TextLines*
       ++blocks.left_out;
       continue;
     }
-    if (!std::isfinite(block->band)) lines->Fail("expected a wavelength in nm");
+    if (!std::isfinite(block->band)) {
+      lines->Fail("expected a wavelength in nm", ErrorKind::kRange, "Wavelength",
+                  FactText(block->band));
+    }
     Bands& bands = blocks.read[{block->plane, block->incidence}];
     if (!bands.emplace(block->band, std::move(block->values)).second) {
-      lines->Fail("this block is there twice, with the same AOI, POI and wavelength");
+      lines->Fail("this block is there twice, with the same AOI, POI and wavelength",
+                  ErrorKind::kConflict, "block");
     }
   }
   return blocks;
@@ -168,8 +183,10 @@ LightToolsBlocks ReadLightToolsBlocks(const LightToolsHeader& header, TextLines*
 std::vector<double> BandsOf(const LightToolsBlocks& blocks, bool tristimulus,
                             const std::string& source) {
   if (blocks.read.empty()) {
-    throw Error(source + ": it has no block of front reflection (Side Front, ScatterType BRDF); " +
-                std::to_string(blocks.left_out) + " are of transmission or the back");
+    throw ErrorIn(ErrorKind::kUnsupported, source,
+                  "it has no block of front reflection (Side Front, ScatterType BRDF); " +
+                      std::to_string(blocks.left_out) + " are of transmission or the back")
+        .About("blocks");
   }
   std::vector<double> bands;
   for (const auto& [band, values] : blocks.read.begin()->second) bands.push_back(band);
@@ -183,7 +200,7 @@ std::vector<double> BandsOf(const LightToolsBlocks& blocks, bool tristimulus,
               << incidence.first << " has "
               << (tristimulus ? "not each of TrisX, TrisY and TrisZ"
                               : "other wavelengths than the first");
-      throw Error(message.str());
+      throw Error(ErrorKind::kMismatch, message.str()).At(source).About("blocks", incidence.second);
     }
   }
   return bands;

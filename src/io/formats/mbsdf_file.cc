@@ -25,12 +25,18 @@ class Reader {
 
   // After the magic come lines of metadata, then the data.
   void FindReflection() {
-    if (!rest_.starts_with(kMagic)) Fail("this does not begin as an MBSDF file does");
+    if (!rest_.starts_with(kMagic)) {
+      Fail("this does not begin as an MBSDF file does", ErrorKind::kFormat, "content");
+    }
     do {
       const size_t end = rest_.find('\n');
-      if (end == std::string_view::npos) Fail("it ends before its data");
+      if (end == std::string_view::npos) {
+        Fail("it ends before its data", ErrorKind::kMissing, "data");
+      }
       rest_.remove_prefix(end + 1);
-      if (rest_.starts_with(kTransmission)) Fail("it has transmission only, and no reflection");
+      if (rest_.starts_with(kTransmission)) {
+        Fail("it has transmission only, and no reflection", ErrorKind::kUnsupported, "data");
+      }
     } while (!rest_.starts_with(kData) && !rest_.starts_with(kReflection));
     rest_.remove_prefix(rest_.find('\n') + 1);
   }
@@ -38,12 +44,14 @@ class Reader {
   Grid TakeGrid() {
     const uint32_t type = TakeUint32(), theta = TakeUint32(), phi = TakeUint32();
     if (type > 1) {
-      Fail("type " + std::to_string(type) + " of data; it must be 0 (one value) or 1 (RGB)");
+      Fail("type " + std::to_string(type) + " of data; it must be 0 (one value) or 1 (RGB)",
+           ErrorKind::kUnknown, "type", std::to_string(type));
     }
     constexpr uint32_t kMost = 1 << 14;
     if (theta == 0 || phi == 0 || theta > kMost || phi > kMost) {
       Fail("a grid of " + std::to_string(theta) + " x " + std::to_string(theta) + " x " +
-           std::to_string(phi) + "; each must be from 1 to " + std::to_string(kMost));
+               std::to_string(phi) + "; each must be from 1 to " + std::to_string(kMost),
+           ErrorKind::kRange, "grid");
     }
     return {type == 0 ? 1U : 3U, theta, phi};
   }
@@ -52,29 +60,34 @@ class Reader {
     const size_t size = grid.cells() * grid.channels * sizeof(float);
     if (rest_.size() < size) {
       Fail("truncated: " + std::to_string(rest_.size()) + " bytes of reflection data, and its " +
-           "header announces " + std::to_string(size) + "; get it once more");
+               "header announces " + std::to_string(size) + "; get it once more",
+           ErrorKind::kFormat, "bytes", std::to_string(rest_.size()));
     }
     if (grid.cells() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-      Fail("it has more samples than any measurement");
+      Fail("it has more samples than any measurement", ErrorKind::kLimit, "grid");
     }
     const std::string_view values = rest_.substr(0, size);
     rest_.remove_prefix(size);
     if (!rest_.empty() && !rest_.starts_with(kTransmission)) {
-      Fail(std::to_string(rest_.size()) + " bytes too many after the reflection data");
+      Fail(std::to_string(rest_.size()) + " bytes too many after the reflection data",
+           ErrorKind::kFormat, "bytes", std::to_string(rest_.size()));
     }
     return values;
   }
 
  private:
   uint32_t TakeUint32() {
-    if (rest_.size() < sizeof(uint32_t)) Fail("it ends within the header of its data");
+    if (rest_.size() < sizeof(uint32_t)) {
+      Fail("it ends within the header of its data", ErrorKind::kFormat, "header");
+    }
     const auto value = LoadLittleEndian<uint32_t>(rest_.data());
     rest_.remove_prefix(sizeof(uint32_t));
     return value;
   }
 
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(source_ + ": " + problem);
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind, std::string_view key,
+                         std::string_view value = "") const {
+    throw ErrorIn(kind, source_, problem).About(key, value);
   }
 
   std::string_view rest_;

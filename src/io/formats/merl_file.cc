@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
+#include <string>
 
 #include "core/files/content.h"
 #include "core/files/file.h"
@@ -35,44 +37,59 @@ std::string BigEndian(const Dimensions& dimensions) {
   return bytes;
 }
 
+// What makes a file none of MERL's.
+struct MerlDefect {
+  std::string key, value, problem;
+};
+
 // Why `bytes` is no MERL file, or nothing if it is one.
-std::string Defect(std::string_view bytes, const MerlGrid& grid) {
+std::optional<MerlDefect> DefectOf(std::string_view bytes, const MerlGrid& grid) {
   const size_t file_size = kHeaderSize + kChannels * PlaneSize(grid);
   const std::string size = std::to_string(bytes.size()) + " bytes";
   const std::string expected = "a MERL file has " + std::to_string(file_size) + " bytes";
-  if (bytes.empty()) return "the file is empty; " + expected;
+  const std::string length = std::to_string(bytes.size());
+  if (bytes.empty()) return MerlDefect{"bytes", length, "the file is empty; " + expected};
   if (const Content content = RecogniseContent(bytes); content.kind != Content::Kind::kUnknown) {
-    return "this is " + content.name + "; " + expected;
+    return MerlDefect{"content", content.name, "this is " + content.name + "; " + expected};
   }
-  if (bytes.size() < kHeaderSize) return "truncated: " + size + "; " + expected;
+  if (bytes.size() < kHeaderSize) {
+    return MerlDefect{"bytes", length, "truncated: " + size + "; " + expected};
+  }
   Dimensions n;
   std::memcpy(n.data(), bytes.data(), kHeaderSize);
   if (bytes.starts_with(BigEndian(DimensionsOf(grid)))) {
-    return "its numbers are big-endian; a MERL file has little-endian ones: swap the bytes of its "
-           "three int32 and of all float64 after them";
+    return MerlDefect{"numbers", "big-endian",
+                      "its numbers are big-endian; a MERL file has little-endian ones: swap the "
+                      "bytes of its three int32 and of all float64 after them"};
   }
   if (n != DimensionsOf(grid)) {
-    return "the header says " + ToString(n) + " bins in a file of " + size + "; a MERL file has " +
-           ToString(DimensionsOf(grid)) + " bins";
+    return MerlDefect{"bins", ToString(n),
+                      "the header says " + ToString(n) + " bins in a file of " + size +
+                          "; a MERL file has " + ToString(DimensionsOf(grid)) + " bins"};
   }
   if (bytes.size() == kHeaderSize + kChannels * PlaneSize(grid) / 2) {
-    return "its values are float32; a MERL file has float64: write them so, " + expected;
+    return MerlDefect{
+        "numbers", "float32",
+        "its values are float32; a MERL file has float64: write them so, " + expected};
   }
   if (bytes.size() < file_size) {
-    return "truncated: " + size + "; " + expected + "; get it once more";
+    return MerlDefect{"bytes", length,
+                      "truncated: " + size + "; " + expected + "; get it once more"};
   }
   if (bytes.size() > file_size) {
-    return std::to_string(bytes.size() - file_size) + " bytes too many: " + size + "; " + expected;
+    return MerlDefect{
+        "bytes", length,
+        std::to_string(bytes.size() - file_size) + " bytes too many: " + size + "; " + expected};
   }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace
 
 BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid) {
   CheckGrid(grid);
-  if (const std::string defect = Defect(bytes, grid); !defect.empty()) {
-    throw Error(source + ": " + defect);
+  if (const std::optional<MerlDefect> defect = DefectOf(bytes, grid)) {
+    throw ErrorIn(ErrorKind::kFormat, source, defect->problem).About(defect->key, defect->value);
   }
   BrdfTable table{source, grid, {}};
   const char* data = bytes.data() + kHeaderSize;
@@ -91,8 +108,11 @@ void WriteMerl(const BrdfTable& table, const std::string& path,
   CheckTable(table);
   const Dimensions dimensions = DimensionsOf({});
   if (DimensionsOf(table.grid) != dimensions) {
-    throw Error("cannot write '" + path + "': a MERL file has " + ToString(dimensions) +
-                " bins, this table has " + ToString(DimensionsOf(table.grid)));
+    throw Error(ErrorKind::kMismatch, "cannot write '" + path + "': a MERL file has " +
+                                          ToString(dimensions) + " bins, this table has " +
+                                          ToString(DimensionsOf(table.grid)))
+        .At(path)
+        .About("bins", ToString(DimensionsOf(table.grid)));
   }
   WriteFile(
       path,

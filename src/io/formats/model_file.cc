@@ -119,7 +119,11 @@ std::string FormatModel(const ModelFile& file) {
   if (spec.anisotropic()) {
     for (const Factor factor : {Factor::kD, Factor::kG}) {
       const Axis& axis = spec.axis(factor);
-      if (!axis.polar()) throw Error("cannot store a model that is anisotropic in part only");
+      if (!axis.polar()) {
+        throw Error(ErrorKind::kUnsupported,
+                    "cannot store a model that is anisotropic in part only")
+            .About("anisotropic");
+      }
       std::vector<double> phi(axis.phi_nodes);
       for (int b = 0; b < axis.phi_nodes; ++b) phi[b] = 360.0 * b / axis.phi_nodes;
       json["theta_nodes"][FactorName(factor)] = axis.theta;

@@ -36,8 +36,10 @@ void Print(const OrderedJson& json, const std::string& indent, std::string* text
 OrderedJson FiniteNumbers(std::span<const double> values, const char* key) {
   for (const double value : values) {
     if (!std::isfinite(value) || value < 0) {
-      throw Error("cannot store the model: '" + std::string(key) + "' has the entry " +
-                  std::to_string(value) + "; all must be finite and >= 0");
+      throw Error(ErrorKind::kData, "cannot store the model: '" + std::string(key) +
+                                        "' has the entry " + std::to_string(value) +
+                                        "; all must be finite and >= 0")
+          .About(key, value);
     }
   }
   return OrderedJson(std::vector<double>(values.begin(), values.end()));

@@ -188,8 +188,10 @@ OpenMaterialExport ExportOpenMaterial(const ExportedBrdf& brdf, const std::strin
                                       int num_threads) {
   if (brdf.anisotropic) {
     throw Error(
+        ErrorKind::kUnsupported,
         "a table of OpenMATERIAL 3D has no azimuth of the light, and so no anisotropic material; "
-        "write .bsdf, .zemax.bsdf or .xml");
+        "write .bsdf, .zemax.bsdf or .xml")
+        .About("anisotropic");
   }
   constexpr double kMaxError = 0.005;
   const auto make = [&](int k) {

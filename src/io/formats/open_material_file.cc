@@ -33,12 +33,14 @@ struct OpenMaterialBand {
 class OpenMaterialTable {
  public:
   OpenMaterialTable(std::string_view text, const std::string& source) : source_(source) {
-    const JsonValue file = JsonValue::Parse(text, source, kTableLimits);
+    const JsonValue file = JsonValue::Parse(text, source, "", kTableLimits);
     const JsonValue* const brdf = Member(file, "brdf", JsonValue::Type::kObject);
     ReadUnit(*brdf);
     const JsonValue* const table = Member(*brdf, "lookupTable", JsonValue::Type::kArray);
     for (size_t k = 0; k < table->size(); ++k) AddRow((*table)[k], k);
-    if (bands_.empty()) throw Error(source + ": lookupTable has no rows");
+    if (bands_.empty()) {
+      throw ErrorIn(ErrorKind::kMissing, source, "lookupTable has no rows").About("lookupTable");
+    }
   }
 
   const std::vector<OpenMaterialBand>& bands() const { return bands_; }
@@ -49,8 +51,10 @@ class OpenMaterialTable {
     const JsonValue* const member =
         object.type() == JsonValue::Type::kObject ? object.Find(key) : nullptr;
     if (member == nullptr || member->type() != type) {
-      throw Error(source_ + ": expected '" + key +
-                  "', as the schema material_brdf of OpenMATERIAL 3D has it");
+      throw ErrorIn(ErrorKind::kFormat, source_,
+                    std::string("expected '") + key +
+                        "', as the schema material_brdf of OpenMATERIAL 3D has it")
+          .About(key);
     }
     return member;
   }
@@ -63,37 +67,45 @@ class OpenMaterialTable {
         unit->type() == JsonValue::Type::kString ? unit->string() : unit->type_name();
     in_decibels_ = text == "dB";
     if (in_decibels_ || text == "1/sr" || text == "sr^-1") return;
-    throw Error(source_ + ": amplitudeUnit is " + text + ", and dB and 1/sr alone are read");
+    throw ErrorIn(ErrorKind::kUnknown, source_,
+                  "amplitudeUnit is " + text + ", and dB and 1/sr alone are read")
+        .About("amplitudeUnit", text);
   }
 
   void AddRow(const JsonValue& row, size_t index) {
-    const auto fail = [&](const std::string& problem) {
-      throw Error(source_ + ": lookupTable, row " + std::to_string(index + 1) + ": " + problem);
+    const auto fail = [&](ErrorKind kind, const char* column, const std::string& problem) {
+      const std::string place = std::to_string(index + 1);
+      throw ErrorIn(kind, source_, "lookupTable, row " + place + ": " + problem)
+          .About(std::string("lookupTable/") + place, column);
     };
     constexpr size_t kColumns = 5;
     if (row.type() != JsonValue::Type::kArray || row.size() != kColumns) {
-      fail("expected wavelength, incident zenith, exit zenith, exit azimuth and BRDF");
+      fail(ErrorKind::kFormat, "columns",
+           "expected wavelength, incident zenith, exit zenith, exit azimuth and BRDF");
     }
     std::array<double, kColumns> numbers{};
     for (size_t k = 0; k < kColumns; ++k) {
       const JsonValue::Type type = row[k].type();
       const bool is_null = type == JsonValue::Type::kNull;
       if (type != JsonValue::Type::kNumber && !(is_null && k == kColumns - 1)) {
-        fail(std::string("expected a number, not ") + row[k].type_name());
+        fail(ErrorKind::kFormat, row[k].type_name(),
+             std::string("expected a number, not ") + row[k].type_name());
       }
       numbers[k] = is_null ? kNoValue : row[k].number();
     }
     if (in_decibels_) numbers.back() = std::pow(10, numbers.back() / 10) / kPi;
     const auto& [wavelength, theta_i, theta_o, phi_o, value] = numbers;
-    if (!(wavelength >= 1e-9 && wavelength <= 0.1)) fail("the first number is no wavelength in m");
+    if (!(wavelength >= 1e-9 && wavelength <= 0.1)) {
+      fail(ErrorKind::kRange, "wavelength", "the first number is no wavelength in m");
+    }
     constexpr double kRounding = 1e-4;
     for (const double theta : {theta_i, theta_o}) {
       if (!(theta >= 0 && theta <= kPi / 2 + kRounding)) {
-        fail("a zenith angle is not from 0 to pi/2 rad");
+        fail(ErrorKind::kRange, "zenith", "a zenith angle is not from 0 to pi/2 rad");
       }
     }
     if (!(phi_o >= -kRounding && phi_o <= 2 * kPi + kRounding)) {
-      fail("the azimuth is not from 0 to 2 pi rad");
+      fail(ErrorKind::kRange, "azimuth", "the azimuth is not from 0 to 2 pi rad");
     }
     const double nanometers = wavelength * 1e9;
     if (bands_.empty() || nanometers != bands_.back().wavelength) {
@@ -125,10 +137,12 @@ Measurement ParseOpenMaterial(std::string_view text, const std::string& source,
   for (const OpenMaterialBand& band : bands) {
     wavelengths.push_back(band.wavelength);
     if (!SameDirections(band, bands[0])) {
-      throw Error(source + ": lookupTable has other directions at " +
-                  std::to_string(std::lround(band.wavelength)) + " nm than at " +
-                  std::to_string(std::lround(bands[0].wavelength)) +
-                  " nm; give a file of each wavelength");
+      throw ErrorIn(ErrorKind::kMismatch, source,
+                    "lookupTable has other directions at " +
+                        std::to_string(std::lround(band.wavelength)) + " nm than at " +
+                        std::to_string(std::lround(bands[0].wavelength)) +
+                        " nm; give a file of each wavelength")
+          .About("lookupTable", std::lround(band.wavelength));
     }
   }
   SpectrumBands spectra(wavelengths, options.bands, source);

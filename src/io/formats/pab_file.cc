@@ -35,16 +35,21 @@ void ReadPabComment(const TextLines& lines, PabHeader* header) {
   if (words[0] == "colorimetry:" && words.size() > 1) {
     header->is_xyz = SameName(words[1], "CIE-XYZ");
     if (!header->is_xyz && !SameName(words[1], "CIE-Y")) {
-      lines.Fail("the colorimetry is unknown; only CIE-Y and CIE-XYZ can be read");
+      lines.Fail("the colorimetry is unknown; only CIE-Y and CIE-XYZ can be read",
+                 ErrorKind::kUnknown, "colorimetry", words[1]);
     }
   }
   if (words[0] == "format:" && words.size() == 4) {
     const auto is = [&](const char* name) { return SameName(words[3], name); };
     if (words[1] != "theta" || words[2] != "phi" ||
         !(is("DSF") || is("BSDF") || is("BRDF") || is("BTDF"))) {
-      lines.Fail("the format is unknown; only theta phi BSDF, BRDF and DSF can be read");
+      lines.Fail("the format is unknown; only theta phi BSDF, BRDF and DSF can be read",
+                 ErrorKind::kUnknown, "format", words[3]);
     }
-    if (is("BTDF")) lines.Fail("these are transmitted light; only reflection can be read");
+    if (is("BTDF")) {
+      lines.Fail("these are transmitted light; only reflection can be read",
+                 ErrorKind::kUnsupported, "format", words[3]);
+    }
     header->is_known = true;
     header->has_cosine = is("DSF");
   }
@@ -53,9 +58,13 @@ void ReadPabComment(const TextLines& lines, PabHeader* header) {
 // Values of a sample's back are those of a front: theta is from the normal on the side of the
 // light.
 void AddPabSample(const TextLines& lines, const PabHeader& header, SampleCollector* collector) {
-  if (!header.is_known) lines.Fail("expected a line '#format: theta phi BRDF' before the values");
+  if (!header.is_known) {
+    lines.Fail("expected a line '#format: theta phi BRDF' before the values", ErrorKind::kMissing,
+               "format");
+  }
   if (!header.theta || !header.phi) {
-    lines.Fail("expected lines '#intheta' and '#inphi' before the values");
+    lines.Fail("expected lines '#intheta' and '#inphi' before the values", ErrorKind::kMissing,
+               "intheta, inphi");
   }
   std::vector<double> numbers;
   ReadNumbers(lines, SplitWords(lines.line()),

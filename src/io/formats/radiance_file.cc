@@ -24,14 +24,18 @@ class RadianceXml {
  public:
   RadianceXml(std::string_view bytes, const std::string& source) : bytes_(bytes), source_(source) {
     const pugi::xml_parse_result result = document_.load_buffer(bytes.data(), bytes.size());
-    if (!result) FailAt(result.offset, std::string("this is no XML: ") + result.description());
+    if (!result) {
+      FailAt(result.offset, std::string("this is no XML: ") + result.description(),
+             ErrorKind::kFormat, "xml", result.description());
+    }
   }
 
   pugi::xml_node root() const { return document_; }
   const std::string& source() const { return source_; }
 
-  [[noreturn]] void Fail(const pugi::xml_node& node, const std::string& problem) const {
-    FailAt(node.offset_debug(), problem);
+  [[noreturn]] void Fail(const pugi::xml_node& node, const std::string& problem, ErrorKind kind,
+                         std::string_view key, std::string_view value = "") const {
+    FailAt(node.offset_debug(), problem, kind, key, value);
   }
 
   pugi::xml_node Child(const pugi::xml_node& node, const char* name) const {
@@ -41,7 +45,8 @@ class RadianceXml {
     Fail(node,
          problem.append(" has no <")
              .append(name)
-             .append(">, which a BSDF of Radiance or WINDOW needs; export it with its values"));
+             .append(">, which a BSDF of Radiance or WINDOW needs; export it with its values"),
+         ErrorKind::kMissing, name);
   }
 
   // Text of a child without the white space around it.
@@ -52,14 +57,18 @@ class RadianceXml {
   double Number(const pugi::xml_node& node, const char* name) const {
     const std::string_view text = Text(node, name);
     if (const std::optional<double> number = ToNumber(text)) return *number;
-    Fail(node.child(name), "<" + std::string(name) + "> is no number");
+    Fail(node.child(name), "<" + std::string(name) + "> is no number", ErrorKind::kFormat, name,
+         text);
   }
 
  private:
-  [[noreturn]] void FailAt(ptrdiff_t offset, const std::string& problem) const {
+  [[noreturn]] void FailAt(ptrdiff_t offset, const std::string& problem, ErrorKind kind,
+                           std::string_view key, std::string_view value) const {
     const auto end = static_cast<size_t>(std::max<ptrdiff_t>(offset, 0));
-    const auto lines = std::ranges::count(bytes_.substr(0, end), '\n');
-    throw Error(source_ + ": line " + std::to_string(lines + 1) + ": " + problem);
+    const auto line = static_cast<int>(std::ranges::count(bytes_.substr(0, end), '\n') + 1);
+    throw Error(kind, source_ + ": line " + std::to_string(line) + ": " + problem)
+        .At(source_, line)
+        .About(key, value);
   }
 
   std::string_view bytes_;
@@ -79,10 +88,11 @@ KlemsBasis ReadBasis(const RadianceXml& xml, const pugi::xml_node& node) {
     const double begin = xml.Number(bounds, "LowerTheta"), end = xml.Number(bounds, "UpperTheta");
     const double count = xml.Number(block, "nPhis");
     if (!(begin >= 0 && begin < end && end <= 90)) {
-      xml.Fail(bounds, "these bounds of theta are none");
+      xml.Fail(bounds, "these bounds of theta are none", ErrorKind::kRange, "ThetaBounds");
     }
     if (!(count >= 1 && count <= kMostPatches - patches) || count != std::floor(count)) {
-      xml.Fail(block, "<nPhis> must be a whole number from 1, and all no more than 16384");
+      xml.Fail(block, "<nPhis> must be a whole number from 1, and all no more than 16384",
+               ErrorKind::kRange, "nPhis");
     }
     patches += static_cast<int>(count);
     basis.rings.push_back({begin, end, static_cast<int>(count)});
@@ -100,9 +110,11 @@ std::vector<PolarAngles> FindPatches(const RadianceXml& xml, const pugi::xml_nod
     const KlemsBasis basis = ReadBasis(xml, node);
     if (SameName(basis.name, name)) return PatchesOf(basis);
   }
-  xml.Fail(block, "the basis '" + Printable(name.substr(0, 40)) +
-                      "' is unknown; Klems full, half and quarter are known, and those that the "
-                      "file defines");
+  xml.Fail(block,
+           "the basis '" + Printable(name.substr(0, 40)) +
+               "' is unknown; Klems full, half and quarter are known, and those that the "
+               "file defines",
+           ErrorKind::kUnknown, which, name);
 }
 
 std::vector<double> ReadMatrix(const RadianceXml& xml, const pugi::xml_node& block, size_t size) {
@@ -115,13 +127,18 @@ std::vector<double> ReadMatrix(const RadianceXml& xml, const pugi::xml_node& blo
     if (rest.empty()) break;
     const std::string_view word = rest.substr(0, rest.find_first_of(kBetween));
     const std::optional<double> value = ToNumber(word);
-    if (!value) xml.Fail(data, "'" + Printable(word.substr(0, 40)) + "' is no number");
+    if (!value) {
+      xml.Fail(data, "'" + Printable(word.substr(0, 40)) + "' is no number", ErrorKind::kFormat,
+               "ScatteringData", word);
+    }
     values.push_back(*value);
     rest.remove_prefix(word.size());
   }
   if (values.size() != size) {
-    xml.Fail(data, std::to_string(values.size()) + " values; expected " + std::to_string(size) +
-                       ", one per pair of patches");
+    xml.Fail(data,
+             std::to_string(values.size()) + " values; expected " + std::to_string(size) +
+                 ", one per pair of patches",
+             ErrorKind::kMismatch, "ScatteringData", std::to_string(values.size()));
   }
   return values;
 }
@@ -146,7 +163,8 @@ ReflectionBlocks FindReflection(const RadianceXml& xml, const pugi::xml_node& la
     }
     if (!found.blocks.empty()) return found;
   }
-  xml.Fail(layer, "it has neither Reflection Front nor Reflection Back, only transmission");
+  xml.Fail(layer, "it has neither Reflection Front nor Reflection Back, only transmission",
+           ErrorKind::kUnsupported, "WavelengthData");
 }
 
 // Blocks of the colour: X, Y, Z, or one for all channels; and their kind in words.
@@ -193,10 +211,14 @@ void AddTree(const RadianceXml& xml, const pugi::xml_node& block, int rank,
              SampleCollector* collector) {
   const pugi::xml_node data = xml.Child(block, "ScatteringData");
   if (!SameName(xml.Text(block, "AngleBasis"), "LBNL/Shirley-Chiu")) {
-    xml.Fail(block, "<AngleBasis> of a tensor tree must be LBNL/Shirley-Chiu");
+    xml.Fail(block, "<AngleBasis> of a tensor tree must be LBNL/Shirley-Chiu",
+             ErrorKind::kUnsupported, "AngleBasis");
   }
   ReadTensorTree(
-      data.child_value(), rank, [&](const std::string& problem) { xml.Fail(data, problem); },
+      data.child_value(), rank,
+      [&](const std::string& problem, std::string_view value) {
+        xml.Fail(data, problem, ErrorKind::kFormat, "ScatteringData", value);
+      },
       [&](const SphericalAngles& at, double value) {
         collector->Add(at, {value, value, value});
       });
@@ -222,8 +244,10 @@ Measurement ParseRadiance(std::string_view bytes, const std::string& source) {
   } else if (has_azimuths || SameName(structure, "TensorTree3")) {
     AddTree(xml, color.blocks[0], has_azimuths ? 4 : 3, &collector);
   } else {
-    xml.Fail(definition, "IncidentDataStructure is " + Printable(structure.substr(0, 40)) +
-                             "; only Columns, Rows, TensorTree3 and TensorTree4 can be read");
+    xml.Fail(definition,
+             "IncidentDataStructure is " + Printable(structure.substr(0, 40)) +
+                 "; only Columns, Rows, TensorTree3 and TensorTree4 can be read",
+             ErrorKind::kUnsupported, "IncidentDataStructure", structure);
   }
   Measurement measurement = has_azimuths ? collector.TakeByAzimuths() : collector.Take();
   measurement.notes.push_back(std::string("read as: ") + reflection.side + ", " +

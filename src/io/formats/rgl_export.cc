@@ -158,7 +158,10 @@ class Tables {
       }
     }
     const double largest = *std::ranges::max_element(ndf_.values);
-    if (!(largest > 0)) throw Error("the model is black; there is nothing to write");
+    if (!(largest > 0)) {
+      throw Error(ErrorKind::kData, "the model is black; there is nothing to write")
+          .About("model", "black");
+    }
     // Nowhere so small that float32 or a ratio to it suffers.
     for (double& x : ndf_.values) x = std::max(x / largest, 1e-7);
   }
@@ -374,9 +377,10 @@ RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options) {
 RglExport ExportRgl(const SpectralModel& model, const RglExportOptions& options) {
   CheckParameters(model);
   if (model.bands() < 2) {
-    throw Error(
-        "a file of spectra needs two or more wavelengths, and the model has one; leave out "
-        "--spectral for a grey one");
+    throw Error(ErrorKind::kUnsupported,
+                "a file of spectra needs two or more wavelengths, and the model has one; leave out "
+                "--spectral for a grey one")
+        .About("wavelengths", model.bands());
   }
   const FactorModel rgb = model.ToRgb();
   const BandsBrdf bands = {.count = model.bands(),

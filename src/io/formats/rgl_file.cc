@@ -64,8 +64,9 @@ std::vector<double> ReadAngles(const TensorFile& file, const char* name, double 
   std::vector<double> angles = file.Float32(name, 1).values;
   for (size_t k = 0; k < angles.size(); ++k) {
     const auto fail = [&](const std::string& expected) {
-      file.Fail(name,
-                "has " + Text(angles[k], 6) + " as entry " + std::to_string(k) + "; " + expected);
+      const std::string angle = Text(angles[k], 6);
+      file.Fail(name, "has " + angle + " as entry " + std::to_string(k) + "; " + expected,
+                ErrorKind::kRange, angle);
     };
     if (!(angles[k] >= min - kRounding && angles[k] <= max + kRounding)) {
       fail("angles are in radians, from " + Text(min, 6) + " to " + Text(max, 6));
@@ -83,12 +84,15 @@ BilinearStack ReadStack(const TensorFile& file, const char* name, const std::vec
   const auto count = static_cast<int>(leading.size());
   Tensor tensor = file.Float32(name, count + 2);
   if (!std::equal(leading.begin(), leading.end(), tensor.shape.begin())) {
-    file.Fail(name, "has another shape than phi_i, theta_i and the three channels ask for");
+    file.Fail(name, "has another shape than phi_i, theta_i and the three channels ask for",
+              ErrorKind::kMismatch);
   }
   const int rows = tensor.shape[count], columns = tensor.shape[count + 1];
-  if (rows < 2 || columns < 2) file.Fail(name, "must have at least 2 rows and 2 columns");
+  if (rows < 2 || columns < 2) {
+    file.Fail(name, "must have at least 2 rows and 2 columns", ErrorKind::kRange);
+  }
   if (tensor.values.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-    file.Fail(name, "has more entries than any measurement");
+    file.Fail(name, "has more entries than any measurement", ErrorKind::kLimit);
   }
   return {rows, columns, std::move(tensor.values)};
 }
@@ -98,8 +102,8 @@ BilinearStack ReadNonNegative(const TensorFile& file, const char* name,
   BilinearStack stack = ReadStack(file, name, leading);
   const auto negative = std::ranges::find_if(stack.values, [](double x) { return x < 0; });
   if (negative != stack.values.end()) {
-    file.Fail(name,
-              "has a negative entry: number " + std::to_string(negative - stack.values.begin()));
+    const std::string entry = std::to_string(negative - stack.values.begin());
+    file.Fail(name, "has a negative entry: number " + entry, ErrorKind::kRange, entry);
   }
   return stack;
 }
@@ -208,10 +212,10 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source,
                        const std::string& bands) {
   const TensorFile file(bytes, source);
   if (file.Has("M") && file.Has("theta_h")) {
-    throw Error(
-        source +
-        ": this is a polarised .pbsdf file of Mueller matrices; save their first entry, the "
-        "BRDF of unpolarised light, as CSV");
+    throw ErrorIn(ErrorKind::kUnsupported, source,
+                  "this is a polarised .pbsdf file of Mueller matrices; save their first entry, "
+                  "the BRDF of unpolarised light, as CSV")
+        .About("M");
   }
   const std::vector<double> phi_i = ReadAngles(file, "phi_i", -2 * kPi, 2 * kPi);
   const std::vector<double> theta_i = ReadAngles(file, "theta_i", 0, kPi / 2);
@@ -222,7 +226,8 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source,
   const int p = static_cast<int>(phi_i.size()), t = static_cast<int>(theta_i.size());
   BilinearStack vndf = ReadNonNegative(file, "vndf", {p, t});
   if (const int slice = BilinearWarp::FirstVanishing(vndf); slice >= 0) {
-    file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i");
+    file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i",
+              ErrorKind::kData, std::to_string(slice % t));
   }
   Colors colors = ReadColors(file, p, t, bands, source);
   if (p > 1) {  // spectra of all azimuths take much memory
@@ -353,9 +358,10 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid,
                       int num_threads) {
   if (!brdf.isotropic()) {
-    throw Error(source +
-                ": the material is anisotropic (field 'phi_i' has several entries); only isotropic "
-                "ones fit a MERL table");
+    throw ErrorIn(ErrorKind::kUnsupported, source,
+                  "the material is anisotropic (field 'phi_i' has several entries); only isotropic "
+                  "ones fit a MERL table")
+        .About("phi_i");
   }
   BrdfTable table = MakeInvalidTable(source, grid);
   const std::vector<bool> above = BinsAboveSurface(grid);

@@ -23,9 +23,11 @@ constexpr double kNearlyAll = 0.9;
 std::vector<bool> ReadBits(const TensorFile& file, size_t count) {
   const std::string_view bytes = file.Bytes(kField);
   if (bytes.size() != (count + 7) / 8) {
-    file.Fail(kField, "has " + std::to_string(bytes.size()) + " bytes; it must have " +
-                          std::to_string((count + 7) / 8) + ", a bit for each of the " +
-                          std::to_string(count) + " nodes that rgb has for each channel");
+    file.Fail(kField,
+              "has " + std::to_string(bytes.size()) + " bytes; it must have " +
+                  std::to_string((count + 7) / 8) + ", a bit for each of the " +
+                  std::to_string(count) + " nodes that rgb has for each channel",
+              ErrorKind::kMismatch, std::to_string(bytes.size()));
   }
   std::vector<bool> bits(count);
   for (size_t i = 0; i < count; ++i) {
@@ -45,7 +47,7 @@ RglMask::RglMask(const TensorFile& file, const std::vector<double>& theta_i, int
   const auto below_horizon =
       static_cast<int>(std::ranges::lower_bound(theta_i, kHorizon) - theta_i.begin());
   if (below_horizon == 0) {
-    file.Fail("theta_i", "has no node below 90 degrees, so nothing was measured");
+    file.Fail("theta_i", "has no node below 90 degrees, so nothing was measured", ErrorKind::kData);
   }
   max_theta_ = theta_i[below_horizon - 1];
   measured_ = ReadBits(file, static_cast<size_t>(rgb_slices) * rows * columns);

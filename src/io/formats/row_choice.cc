@@ -24,13 +24,15 @@ RowChoice::RowChoice(const std::string& rows, const std::vector<std::string>& co
   for (const std::string_view part : SplitCells(rows)) {
     const size_t at = part.find('=');
     if (at == std::string_view::npos) {
-      header.Fail("--rows=" + rows + ": give a column and a cell of it, as polarization=s");
+      header.Fail("--rows=" + rows + ": give a column and a cell of it, as polarization=s",
+                  ErrorKind::kFormat, "rows", rows);
     }
     const std::string_view name = Trimmed(part.substr(0, at));
     const std::vector<size_t> found = PositionsOf(name, columns);
     if (found.size() != 1) {
       header.Fail("--rows=" + rows + ": there " + (found.empty() ? "is no" : "are several") +
-                  (found.empty() ? " column '" : " columns '") + std::string(name) + "'");
+                      (found.empty() ? " column '" : " columns '") + std::string(name) + "'",
+                  found.empty() ? ErrorKind::kUnknown : ErrorKind::kConflict, "rows", name);
     }
     parts_.push_back({found[0], std::string(Trimmed(part.substr(at + 1)))});
   }
@@ -66,7 +68,8 @@ void RowChoice::CheckTaken() const {
     }
     if (part.others.size() > kMostOthers) there += ", ...";
   }
-  header_.Fail("no row is of --rows=" + rows_ + "; there are " + there);
+  header_.Fail("no row is of --rows=" + rows_ + "; there are " + there, ErrorKind::kMissing, "rows",
+               rows_);
 }
 
 }  // namespace trilobe

@@ -64,11 +64,13 @@ MerlGrid ParseMerlGrid(std::string_view text) {
   constexpr int kFewest = 4, kMost = 360;
   const auto [fewest, most] = std::minmax({grid.theta_h, grid.theta_d, grid.phi_d});
   if (fewest < kFewest || most > kMost || 1.0 * grid.theta_h * grid.theta_d * grid.phi_d > 1e7) {
-    throw Error("'" + std::string(text) +
-                "' is no grid of bins; give the numbers of theta_h, theta_d and phi_d, as "
-                "30x30x60, each from " +
-                std::to_string(kFewest) + " to " + std::to_string(kMost) +
-                ", and no more than ten million in all");
+    throw Error(ErrorKind::kFormat,
+                "'" + std::string(text) +
+                    "' is no grid of bins; give the numbers of theta_h, theta_d and phi_d, as "
+                    "30x30x60, each from " +
+                    std::to_string(kFewest) + " to " + std::to_string(kMost) +
+                    ", and no more than ten million in all")
+        .About("grid of bins", text);
   }
   return grid;
 }
@@ -111,7 +113,8 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
                                   bool is_table) {
   if (const MeasurementFormat* const format = RecogniseFormat(bytes)) return *format;
   if (const std::string known = ForeignFile(bytes, source); !known.empty()) {
-    throw Error(source + ": this is " + known);
+    throw ErrorIn(ErrorKind::kUnsupported, source, "this is " + known)
+        .About("content", known.substr(0, known.find_first_of(",;")));
   }
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
   const Content content = RecogniseContent(bytes);
@@ -130,10 +133,14 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
     if (found != formats.end()) return *found;
   }
   if (content.kind != Content::Kind::kUnknown) {
-    throw Error(source + ": this is " + content.name + WhatIsMissing(content.kind, bytes) +
-                "; a measurement is " + WhatMeasurementsAre());
+    throw ErrorIn(ErrorKind::kUnsupported, source,
+                  "this is " + content.name + WhatIsMissing(content.kind, bytes) +
+                      "; a measurement is " + WhatMeasurementsAre())
+        .About("content", content.name);
   }
-  if (bytes.empty()) throw Error(source + ": the file is empty");
+  if (bytes.empty()) {
+    throw ErrorIn(ErrorKind::kFormat, source, "the file is empty").About("content", "empty");
+  }
   return formats.front();  // MERL: it says what is wrong with its header
 }
 
@@ -182,14 +189,17 @@ void DropBadReadings(const SourceOptions& options, bool is_rgl, Measurement* mea
 double ShownTilt(Measurement* measurement) {
   const std::string& source = measurement->source;
   if (!measurement->table) {
-    throw Error(source + ": --tilt=auto goes by the highlight of a table, and this is a " +
-                measurement->kind + "; give degrees");
+    throw ErrorIn(ErrorKind::kUnsupported, source,
+                  "--tilt=auto goes by the highlight of a table, and this is a " +
+                      measurement->kind + "; give degrees")
+        .About("tilt", "auto");
   }
   const TiltSymptom tilt = TiltOf(*measurement->table);
   if (!tilt.highlight) {
-    throw Error(source +
-                ": --tilt=auto goes by the highlight, and there is none that is three times as "
-                "bright as what is around it; give degrees");
+    throw ErrorIn(ErrorKind::kData, source,
+                  "--tilt=auto goes by the highlight, and there is none that is three times as "
+                  "bright as what is around it; give degrees")
+        .About("tilt", "auto");
   }
   std::ostringstream note;
   note.precision(2);
@@ -250,11 +260,15 @@ const MeasurementFormat* RecogniseFormat(std::string_view bytes) {
   return found == formats.end() ? nullptr : &*found;
 }
 
-void CheckMayBeJson(std::string_view bytes, const std::string& what) {
+void CheckMayBeJson(std::string_view bytes, const std::string& file, const std::string& otherwise) {
   const Content content = RecogniseContent(bytes);
   const MeasurementFormat* const format = RecogniseFormat(bytes);
   if (format == nullptr && content.kind != Content::Kind::kForeign) return;
-  throw Error(what + ": this is " + (format == nullptr ? content.name : format->description));
+  const std::string is = format == nullptr ? content.name : format->description;
+  throw Error(ErrorKind::kFormat,
+              file + (otherwise.empty() ? "" : ": " + otherwise) + ": this is " + is)
+      .At(file)
+      .About("content", is);
 }
 
 const MeasurementFormat& WritableFormat(const std::string& path) {
@@ -265,7 +279,9 @@ const MeasurementFormat& WritableFormat(const std::string& path) {
     if (ending.empty() || ending == format.ending) return format;
     known += (known.empty() ? "" : ", ") + format.ending + " for " + format.written_as;
   }
-  throw Error(path + ": trilobe writes no '" + ending + "'; end the name in " + known);
+  throw ErrorIn(ErrorKind::kUnsupported, path,
+                "trilobe writes no '" + ending + "'; end the name in " + known)
+      .About("ending", ending);
 }
 
 std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
@@ -287,9 +303,13 @@ SynthSource SynthSourceOf(std::string_view name) {
   const std::string_view grid = name.substr(at + 1);
   if (std::ranges::count(grid, 'x') == 2) {
     if (material.anisotropic) {
-      throw Error("synth:" + std::string(name) + ": " + material.name +
-                  " is anisotropic, which a table by theta_h, theta_d and phi_d cannot hold; give "
-                  "the numbers of theta and phi of its directions, as 6x48");
+      throw Error(
+          ErrorKind::kUnsupported,
+          "synth:" + std::string(name) + ": " + material.name +
+              " is anisotropic, which a table by theta_h, theta_d and phi_d cannot hold; give "
+              "the numbers of theta and phi of its directions, as 6x48")
+          .At("synth:" + std::string(name))
+          .About("anisotropic");
     }
     return {material, ParseMerlGrid(grid)};
   }

@@ -35,9 +35,12 @@ void SetCosine(std::string_view text, SourceOptions* options) {
   const bool named = outgoing || text.starts_with("i:");
   const std::optional<double> exponent = ToNumber(text.substr(named ? 2 : 0));
   if (!exponent) {
-    throw Error("--cosine=" + std::string(text) +
-                ": give the exponent of cos theta_i that values have been multiplied by, as 1, or "
-                "of cos theta_o, as o:1");
+    throw Error(
+        ErrorKind::kFormat,
+        "--cosine=" + std::string(text) +
+            ": give the exponent of cos theta_i that values have been multiplied by, as 1, or "
+            "of cos theta_o, as o:1")
+        .About("cosine", text);
   }
   (outgoing ? options->cosine_o : options->cosine) = *exponent;
 }

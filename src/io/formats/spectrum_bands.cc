@@ -42,8 +42,10 @@ size_t Nearest(std::span<const double> wavelengths, double chosen, const std::st
   const auto off = [&](double wavelength) { return std::abs(wavelength - chosen); };
   const auto nearest = std::ranges::min_element(wavelengths, {}, off);
   if (nearest == wavelengths.end() || !(off(*nearest) <= kMeant)) {
-    throw Error(source + ": no wavelength of " + Nm(chosen) + " for --bands; there " +
-                (wavelengths.size() == 1 ? "is " : "are ") + Known(wavelengths, chosen));
+    throw ErrorIn(ErrorKind::kMissing, source,
+                  "no wavelength of " + Nm(chosen) + " for --bands; there " +
+                      (wavelengths.size() == 1 ? "is " : "are ") + Known(wavelengths, chosen))
+        .About("bands", chosen);
   }
   return nearest - wavelengths.begin();
 }
@@ -71,9 +73,11 @@ std::vector<double> ParseBands(std::string_view bands) {
   std::vector<double> wavelengths;
   if (bands.empty()) return wavelengths;
   const auto fail = [&] {
-    throw Error("--bands=" + std::string(bands) +
-                ": give a wavelength in nm, as 550, three to be r, g and b, as 650,550,450, or "
-                "more to make a colour of");
+    throw Error(ErrorKind::kFormat,
+                "--bands=" + std::string(bands) +
+                    ": give a wavelength in nm, as 550, three to be r, g and b, as 650,550,450, or "
+                    "more to make a colour of")
+        .About("bands", bands);
   };
   for (std::string_view cell : SplitCells(bands)) {
     if (cell.ends_with("nm")) cell = Trimmed(cell.substr(0, cell.size() - 2));
@@ -95,8 +99,9 @@ SpectrumBands::SpectrumBands(std::span<const double> wavelengths, std::string_vi
   for (const double band : bands) {
     const size_t k = Nearest(wavelengths, band, source);
     if (std::ranges::find(read_, k) != read_.end()) {
-      throw Error(source + ": --bands=" + std::string(chosen) + " names " + Nm(wavelengths[k]) +
-                  " twice");
+      throw ErrorIn(ErrorKind::kConflict, source,
+                    "--bands=" + std::string(chosen) + " names " + Nm(wavelengths[k]) + " twice")
+          .About("bands", wavelengths[k]);
     }
     read_.push_back(k);
   }
@@ -111,7 +116,7 @@ SpectrumBands::SpectrumBands(std::span<const double> wavelengths, std::string_vi
       color_ = SpectralColor::OfBands(Read(wavelengths), source);
     } catch (const Error& error) {
       if (!bands.empty() || wavelengths.empty()) throw;
-      throw Error(std::string(error.what()) + Advice(wavelengths));
+      throw error.WithMessage(std::string(error.what()) + Advice(wavelengths));
     }
   }
   if (read_.size() > kChannels) return;

@@ -31,14 +31,17 @@ class SpeosText {
   SpeosText(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
 
   // Fails at the line of what was read last.
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(source_ + ": line " + std::to_string(at_) + ": " + problem);
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind, std::string_view key,
+                         std::string_view value = "") const {
+    throw Error(kind, source_ + ": line " + std::to_string(at_) + ": " + problem)
+        .At(source_, at_)
+        .About(key, value);
   }
 
   // Reads up to the end of the line, or of the text.
   std::string_view RestOfLine(const char* what) {
     at_ = line_;
-    if (rest_.empty()) Fail(std::string("the file ends before ") + what);
+    if (rest_.empty()) Fail(std::string("the file ends before ") + what, ErrorKind::kMissing, what);
     const size_t end = std::min(rest_.find('\n'), rest_.size());
     const std::string_view line = rest_.substr(0, end);
     Skip(std::min(end + 1, rest_.size()));
@@ -55,12 +58,13 @@ class SpeosText {
     constexpr std::string_view kBlanks = " \t\r\n";
     Skip(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
     at_ = line_;
-    if (rest_.empty()) Fail(std::string("the file ends before ") + what);
+    if (rest_.empty()) Fail(std::string("the file ends before ") + what, ErrorKind::kMissing, what);
     const std::string_view word =
         rest_.substr(0, std::min(rest_.find_first_of(kBlanks), rest_.size()));
     const std::optional<double> number = ToNumber(word);
     if (!number) {
-      Fail("expected " + std::string(what) + ", not '" + Printable(word.substr(0, 40)) + "'");
+      Fail("expected " + std::string(what) + ", not '" + Printable(word.substr(0, 40)) + "'",
+           ErrorKind::kFormat, what, word);
     }
     rest_.remove_prefix(word.size());
     return *number;
@@ -70,14 +74,17 @@ class SpeosText {
     constexpr double kMost = 10000;
     const double count = Number(what);
     if (!(count >= 1 && count <= kMost) || count != std::floor(count)) {
-      Fail(std::string("expected ") + what + ", from 1 to 10000");
+      Fail(std::string("expected ") + what + ", from 1 to 10000", ErrorKind::kRange, what,
+           FactText(count));
     }
     return static_cast<int>(count);
   }
 
   bool Flag(const char* what) {
     const double flag = Number(what);
-    if (flag != 0 && flag != 1) Fail(std::string("expected ") + what + ", 0 or 1");
+    if (flag != 0 && flag != 1) {
+      Fail(std::string("expected ") + what + ", 0 or 1", ErrorKind::kFormat, what, FactText(flag));
+    }
     return flag == 1;
   }
 
@@ -90,7 +97,8 @@ class SpeosText {
       const bool ascends = numbers.size() == 1 || number > numbers[numbers.size() - 2];
       if (!(number >= least && number <= most) || !ascends) {
         Fail(Text(number) + " is none of ascending " + what + " from " + Text(least) + " to " +
-             Text(most));
+                 Text(most),
+             ErrorKind::kRange, what, FactText(number));
       }
     }
     return numbers;
@@ -120,7 +128,8 @@ SpeosTable ReadSpeosTable(SpeosText* text) {
   for (int t = 0; t < thetas; ++t) {
     const double theta = text->Number("theta");
     if (!(theta >= 0 && theta <= 180) || (t > 0 && !(theta > table.thetas.back()))) {
-      text->Fail(Text(theta) + " is none of ascending theta from 0 to 180");
+      text->Fail(Text(theta) + " is none of ascending theta from 0 to 180", ErrorKind::kRange,
+                 "theta", FactText(theta));
     }
     table.thetas.push_back(theta);
     for (int p = 0; p < phis; ++p) table.values.push_back(text->Number("a value"));
@@ -138,7 +147,8 @@ std::vector<double> SharesOfPhi(const std::vector<double>& phis, const SpeosText
   const bool open = !half && std::abs(reach + step - 360) < 1e-6;
   if (!closed && !half && !open) {
     text.Fail("phi goes from " + Text(first) + " to " + Text(last) +
-              "; it must go round half a turn or a whole one");
+                  "; it must go round half a turn or a whole one",
+              ErrorKind::kRange, "phi", FactText(last));
   }
   std::vector<double> shares(phis.size());
   for (size_t k = 0; k + 1 < phis.size(); ++k) {
@@ -223,9 +233,13 @@ Measurement ReadSpectral(SpeosText* text, bool is_bsdf, const std::string& sourc
       const double reflectance = text->Number("a reflectance [%]") / 100;
       SpeosTable table = ReadSpeosTable(text);
       if (table.transmits()) continue;
-      if (!(reflectance >= 0 && reflectance <= 10)) text->Fail("the reflectance above is none");
+      if (!(reflectance >= 0 && reflectance <= 10)) {
+        text->Fail("the reflectance above is none", ErrorKind::kRange, "reflectance",
+                   FactText(reflectance));
+      }
       if (!tables.empty() && (table.thetas != tables[0].thetas || table.phis != tables[0].phis)) {
-        text->Fail("the table above has other angles than those of other wavelengths");
+        text->Fail("the table above has other angles than those of other wavelengths",
+                   ErrorKind::kMismatch, "angles");
       }
       scales.push_back(ScaleOf(table, reflectance, is_bsdf, *text));
       tables.push_back(std::move(table));
@@ -293,9 +307,11 @@ SpeosSpectrum ReadSpeosSpectrum(SpeosText* text) {
     spectrum.wavelengths.push_back(text->Number("a wavelength [nm]"));
     const double percent = text->Number("a reflectance [%]");
     if (k > 0 && !(spectrum.wavelengths[k] > spectrum.wavelengths[k - 1])) {
-      text->Fail("wavelengths must ascend");
+      text->Fail("wavelengths must ascend", ErrorKind::kRange, "wavelengths");
     }
-    if (!(percent >= 0 && percent <= 1000)) text->Fail("this reflectance is none");
+    if (!(percent >= 0 && percent <= 1000)) {
+      text->Fail("this reflectance is none", ErrorKind::kRange, "reflectance", FactText(percent));
+    }
     spectrum.values.push_back(percent / 100);
   }
   return spectrum;
@@ -333,7 +349,9 @@ Measurement ReadAnisotropic(SpeosText* text, bool transmits, bool is_bsdf,
   for (const Rotation& rotation : rotations) {
     for (size_t k = 0; k < rotation.theta_i.size(); ++k) {
       tables.push_back(ReadSpeosTable(text));
-      if (tables.back().transmits()) text->Fail("the table above is of transmitted light");
+      if (tables.back().transmits()) {
+        text->Fail("the table above is of transmitted light", ErrorKind::kUnsupported, "table");
+      }
     }
   }
   const Rgb color = spectrum.Color(source);
@@ -369,22 +387,27 @@ Measurement ParseSpeos(std::string_view bytes, const std::string& source,
   const std::string_view header = text.RestOfLine("its header");
   const bool anisotropic = BeginsWith(header, kSpeosAnisotropic);
   if (!anisotropic && !BeginsWith(header, kSpeosSpectral)) {
-    text.Fail("expected 'OPTIS - brdf surface file' or 'OPTIS - Anisotropic BSDF surface file'");
+    text.Fail("expected 'OPTIS - brdf surface file' or 'OPTIS - Anisotropic BSDF surface file'",
+              ErrorKind::kFormat, "header");
   }
   const std::string_view version = header.substr(std::min(header.rfind('v'), header.size() - 1));
   const double number = ToNumber(version.substr(1)).value_or(0);
   if (!(number >= 7 && number < 10)) {
     text.Fail("version " + Printable(version.substr(0, 20)) +
-              " is not read; save it anew in the BSDF viewer of Speos, or as CSV");
+                  " is not read; save it anew in the BSDF viewer of Speos, or as CSV",
+              ErrorKind::kUnsupported, "version", version);
   }
   if (text.Flag("the mode")) {
-    text.Fail("this is the binary mode; save it as text in the BSDF viewer of Speos");
+    text.Fail("this is the binary mode; save it as text in the BSDF viewer of Speos",
+              ErrorKind::kUnsupported, "mode");
   }
   text.RestOfLine("its comment");
   text.RestOfLine("its comment");
   const double characters = text.Number("the length of the description");
   text.RestOfLine("the description");
-  if (!(characters >= 0 && characters <= 1e6)) text.Fail("the length above is none");
+  if (!(characters >= 0 && characters <= 1e6)) {
+    text.Fail("the length above is none", ErrorKind::kRange, "length", FactText(characters));
+  }
   text.Skip(static_cast<size_t>(characters));
   text.RestOfLine("what follows the description");
   if (anisotropic) {
@@ -394,7 +417,10 @@ Measurement ParseSpeos(std::string_view bytes, const std::string& source,
   }
   const bool reflects = text.Flag("whether it reflects");
   const bool transmits = text.Flag("whether it transmits");
-  if (!reflects) text.Fail("these are transmitted light; only reflection can be read");
+  if (!reflects) {
+    text.Fail("these are transmitted light; only reflection can be read", ErrorKind::kUnsupported,
+              "reflection");
+  }
   const bool is_bsdf = text.Flag("the type of the values");
   Measurement measurement = anisotropic ? ReadAnisotropic(&text, transmits, is_bsdf, source)
                                         : ReadSpectral(&text, is_bsdf, source, options);

@@ -27,8 +27,10 @@ std::vector<NamedColumn> NamedColumns(const std::string& columns) {
     named.push_back({std::string(Trimmed(cell.substr(0, at))),
                      by_header ? std::string(Trimmed(in_header)) : std::string()});
     if (!by_header || !named.back().in_header.empty()) continue;
-    throw Error("--columns=" + columns + ": '" + std::string(cell) +
-                "' names no column of the header; write theta_i=NAME,f=NAME");
+    throw Error(ErrorKind::kUnknown,
+                "--columns=" + columns + ": '" + std::string(cell) +
+                    "' names no column of the header; write theta_i=NAME,f=NAME")
+        .About("columns", cell);
   }
   return named;
 }
@@ -65,8 +67,10 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
     head = *std::move(other);  // the layout says what is missing
   } else {
     if (!head.lines.Next()) {
-      throw Error(source + ": the file is empty; a table begins with a header row, as " +
-                  kUsualColumns);
+      throw ErrorIn(
+          ErrorKind::kFormat, source,
+          std::string("the file is empty; a table begins with a header row, as ") + kUsualColumns)
+          .About("content", "empty");
     }
     while (head.lines.line().starts_with('%') && head.lines.Next()) {
     }
@@ -94,12 +98,15 @@ std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& heade
   for (const auto& [what, in_header] : named) {
     const std::vector<size_t> at = PositionsOf(in_header, head.names);
     const std::string begin = "--columns names '" + in_header + "', ";
-    if (at.empty()) header.Fail(begin + "and the header has " + Listed(head.names));
+    if (at.empty())
+      header.Fail(begin + "and the header has " + Listed(head.names), ErrorKind::kUnknown,
+                  "columns", in_header);
     if (at.size() > 1) {
       header.Fail(begin + "which the header has " + std::to_string(at.size()) +
-                  " times; name all columns in their order, as " + kUsualColumns);
+                      " times; name all columns in their order, as " + kUsualColumns,
+                  ErrorKind::kConflict, "columns", in_header);
     }
-    if (whats[at[0]] != "-") header.Fail(begin + "twice");
+    if (whats[at[0]] != "-") header.Fail(begin + "twice", ErrorKind::kConflict, "columns", what);
     const std::string unit = ColumnNamed(head.names[at[0]]).unit;
     whats[at[0]] = what;
     if (unit == "db" || (!unit.empty() && RadiansIn(unit))) whats[at[0]] += " [" + unit + "]";
@@ -115,10 +122,13 @@ void CheckNames(const std::string& columns) {
   for (const NamedColumn& column : NamedColumns(columns)) whats.push_back(column.what);
   for (const TableColumn& column : ColumnsNamed(whats)) {
     if (column.role != ColumnRole::kOther || column.name.empty() || column.name == "-") continue;
-    throw Error("--columns=" + columns + ": '" + column.name +
-                "' says of no column what it holds; known are theta_i, phi_i, theta_o, phi_o, "
-                "phase, r, g, b, f, 550nm, wavelength, db, log10 and ln; - leaves a column out, "
-                "and theta_i=NAME names one of the header");
+    throw Error(
+        ErrorKind::kUnknown,
+        "--columns=" + columns + ": '" + column.name +
+            "' says of no column what it holds; known are theta_i, phi_i, theta_o, phi_o, "
+            "phase, r, g, b, f, 550nm, wavelength, db, log10 and ln; - leaves a column out, "
+            "and theta_i=NAME names one of the header")
+        .About("columns", column.name);
   }
 }
 

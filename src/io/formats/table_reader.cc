@@ -58,7 +58,8 @@ class TableReader {
     }
     if (options_.scale == 0 && MayBeFactor(layout_, !options_.columns.empty())) {
       header_.Fail(AdviceOnFactor(layout_.columns[layout_.values[0]].name,
-                                  MedianReflected(measurement.samples)));
+                                  MedianReflected(measurement.samples)),
+                   ErrorKind::kMissing, "scale", layout_.columns[layout_.values[0]].name);
     }
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
@@ -80,7 +81,9 @@ class TableReader {
     first_names_ = head_.names;
     GoToRows(&head_);
     const std::vector<TableColumn> columns = ColumnsOf(head_, header_, options_.columns);
-    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) header_.Fail(advice);
+    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) {
+      header_.Fail(advice, ErrorKind::kUnsupported, "columns");
+    }
     CheckNames(options_.columns);
     return LayoutOf(header_, columns, given_,
                     /*prefers_bands=*/!options_.bands.empty());
@@ -203,7 +206,8 @@ class TableReader {
     if (degrees < least - kRounding || degrees > most + kRounding) {
       lines.FailAt(column, named.name,
                    Text(degrees) + " deg is no angle between these directions, which are " +
-                       Text(least) + " to " + Text(most) + " deg apart");
+                       Text(least) + " to " + Text(most) + " deg apart",
+                   ErrorKind::kRange, FactText(degrees));
     }
     const double sines = std::sin(theta_i_) * std::sin(theta_o_);
     if (std::abs(sines) < 1e-12) return 0;
@@ -273,20 +277,23 @@ class TableReader {
     const double wavelength = WavelengthOf(lines);
     if (by_rows) {
       if (wavelength > 0 && std::isfinite(wavelength)) return wavelength;
-      lines.FailAt(column, name, "expected a wavelength in nm");
+      lines.FailAt(column, name, "expected a wavelength in nm", ErrorKind::kRange,
+                   FactText(wavelength));
     }
     if (!wavelength_) wavelength_ = wavelength;
     if (bands_ || wavelength == *wavelength_) return wavelength;
     lines.FailAt(column, name,
                  Text(wavelength) + " comes after " + Text(*wavelength_) +
-                     "; make a column of each wavelength, as 550nm, or a file of each");
+                     "; make a column of each wavelength, as 550nm, or a file of each",
+                 ErrorKind::kUnsupported, FactText(wavelength));
   }
 
   void AddToRows(const TextLines& lines, const SphericalAngles& angles, double wavelength,
                  SpectraOfRows* by_rows) {
     if (by_rows->Add(angles, wavelength, numbers_[0])) return;
     lines.Fail("this is one wavelength more than the " +
-               std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum");
+                   std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum",
+               ErrorKind::kLimit, "wavelength");
   }
 
   // Whether the table has the layout that this library writes, once the only one that it read.
@@ -392,7 +399,10 @@ Measurement ReadTextTable(std::string_view text, const std::string& source,
     return TableReader(text, source, options).Read();
   }
   const std::string rows = RowsOfMatrices(text, source, options.columns);
-  if (rows.empty()) throw Error(source + ": no matrix of numbers for --columns");
+  if (rows.empty()) {
+    throw ErrorIn(ErrorKind::kMissing, source, "no matrix of numbers for --columns")
+        .About("columns");
+  }
   SourceOptions of_rows = options;
   of_rows.columns.clear();
   Measurement measurement = TableReader(rows, source, of_rows).Read();

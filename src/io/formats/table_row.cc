@@ -81,8 +81,9 @@ void TableRow::FailAsRow(const TextLines& lines) const {
     ReadNumber(lines, telling, columns[telling].name, cells[telling]);  // throws
   }
   lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
-             "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
-             " to " + columns.back().name);
+                 "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
+                 " to " + columns.back().name,
+             ErrorKind::kFormat, "columns", std::to_string(cells.size()));
 }
 
 double TableRow::Number(const TextLines& lines, size_t column) {
@@ -93,7 +94,8 @@ double TableRow::Number(const TextLines& lines, size_t column) {
     return *number;
   }
   if (const auto number = OddNumber(cells_[column])) return *number;
-  lines.FailAt(column, layout_->columns[column].name, WhyNoNumber(cells_[column]));
+  lines.FailAt(column, layout_->columns[column].name, WhyNoNumber(cells_[column]),
+               ErrorKind::kFormat, cells_[column]);
 }
 
 }  // namespace trilobe

@@ -35,8 +35,10 @@ class Cursor {
 
   std::string_view Bytes(size_t count) {
     if (count > bytes_.size() - position_) {
-      throw Error(source_ + ": truncated: the header goes on beyond the file's " +
-                  std::to_string(bytes_.size()) + " bytes; get it once more");
+      throw ErrorIn(ErrorKind::kFormat, source_,
+                    "truncated: the header goes on beyond the file's " +
+                        std::to_string(bytes_.size()) + " bytes; get it once more")
+          .About("bytes", bytes_.size());
     }
     const std::string_view taken = bytes_.substr(position_, count);
     position_ += count;
@@ -58,23 +60,27 @@ class Cursor {
 
 }  // namespace
 
-void TensorFile::Fail(std::string_view field, const std::string& problem) const {
-  throw Error(source_ + ": field " + Quote(field) + " " + problem);
+void TensorFile::Fail(std::string_view field, const std::string& problem, ErrorKind kind,
+                      std::string_view value) const {
+  throw ErrorIn(kind, source_, "field " + Quote(field) + " " + problem).About(field, value);
 }
 
 bool LooksLikeTensorFile(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }
 
 TensorFile::TensorFile(std::string_view bytes, const std::string& source) : source_(source) {
   if (!LooksLikeTensorFile(bytes)) {
-    throw Error(source + ": not an RGL file: it must begin with tensor_file");
+    throw ErrorIn(ErrorKind::kFormat, source, "not an RGL file: it must begin with tensor_file")
+        .About("tensor_file");
   }
   Cursor cursor(bytes, source);
   cursor.Bytes(kTensorMagic.size());
   const int major = cursor.Number<uint8_t>();
   const int minor = cursor.Number<uint8_t>();
   if (major != 1 || minor != 0) {
-    throw Error(source + ": tensor file version " + std::to_string(major) + "." +
-                std::to_string(minor) + "; only version 1.0 can be read");
+    throw ErrorIn(ErrorKind::kUnsupported, source,
+                  "tensor file version " + std::to_string(major) + "." + std::to_string(minor) +
+                      "; only version 1.0 can be read")
+        .About("version", std::to_string(major) + "." + std::to_string(minor));
   }
   // Nothing is reserved by this count: each field must first show its bytes.
   const auto field_count = cursor.Number<uint32_t>();
@@ -85,28 +91,36 @@ TensorFile::TensorFile(std::string_view bytes, const std::string& source) : sour
     field.dtype = cursor.Number<uint8_t>();
     const auto offset = cursor.Number<uint64_t>();
     if (field.dtype == 0 || field.dtype >= kItemSizes.size()) {
-      Fail(field.name, "has the unknown type number " + std::to_string(field.dtype));
+      Fail(field.name, "has the unknown type number " + std::to_string(field.dtype),
+           ErrorKind::kUnknown, std::to_string(field.dtype));
     }
     if (offset > bytes.size()) {
-      Fail(field.name, "starts at byte " + std::to_string(offset) + " of a file of " +
-                           std::to_string(bytes.size()) + " bytes");
+      Fail(field.name,
+           "starts at byte " + std::to_string(offset) + " of a file of " +
+               std::to_string(bytes.size()) + " bytes",
+           ErrorKind::kFormat, "beyond the file");
     }
     const size_t available = bytes.size() - offset;
     size_t size = kItemSizes[field.dtype];
     for (int k = 0; k < ndim; ++k) {
       const auto extent = cursor.Number<uint64_t>();
-      if (extent == 0) Fail(field.name, "is empty: dimension " + std::to_string(k) + " is 0");
+      if (extent == 0) {
+        Fail(field.name, "is empty: dimension " + std::to_string(k) + " is 0", ErrorKind::kFormat,
+             "0");
+      }
       if (extent > static_cast<uint64_t>(std::numeric_limits<int>::max()) ||
           extent > available / size) {
-        Fail(field.name, "reaches past the end of the file: dimension " + std::to_string(k) +
-                             " is " + std::to_string(extent) + ", but only " +
-                             std::to_string(available) + " bytes follow byte " +
-                             std::to_string(offset));
+        Fail(field.name,
+             "reaches past the end of the file: dimension " + std::to_string(k) + " is " +
+                 std::to_string(extent) + ", but only " + std::to_string(available) +
+                 " bytes follow byte " + std::to_string(offset),
+             ErrorKind::kFormat, "beyond the file");
       }
       size *= extent;
       field.shape.push_back(static_cast<int>(extent));
     }
-    if (size > available) Fail(field.name, "reaches past the end of the file");
+    if (size > available)
+      Fail(field.name, "reaches past the end of the file", ErrorKind::kFormat, "beyond the file");
     field.data = bytes.substr(offset, size);
     fields_.push_back(std::move(field));
   }
@@ -118,7 +132,7 @@ void TensorFile::CheckApart(std::string_view bytes, size_t header_size) const {
   for (const Field& field : fields_) names.push_back(field.name);
   std::ranges::sort(names);
   if (const auto twice = std::ranges::adjacent_find(names); twice != names.end()) {
-    Fail(*twice, "comes twice; there must be one field of each name");
+    Fail(*twice, "comes twice; there must be one field of each name", ErrorKind::kConflict);
   }
   struct Part {
     size_t begin, end;
@@ -134,8 +148,10 @@ void TensorFile::CheckApart(std::string_view bytes, size_t header_size) const {
   std::string before = "the header";
   for (const Part& part : parts) {
     if (part.begin < end) {
-      Fail(part.name, "starts at byte " + std::to_string(part.begin) + ", inside " + before +
-                          ", which ends at byte " + std::to_string(end));
+      Fail(part.name,
+           "starts at byte " + std::to_string(part.begin) + ", inside " + before +
+               ", which ends at byte " + std::to_string(end),
+           ErrorKind::kConflict, std::to_string(part.begin));
     }
     end = part.end;
     before = "field " + Quote(part.name);
@@ -146,16 +162,20 @@ const TensorFile::Field& TensorFile::Find(std::string_view name, uint8_t dtype, 
   for (const Field& field : fields_) {
     if (field.name != name) continue;
     if (field.dtype != dtype) {
-      Fail(name, "has type number " + std::to_string(field.dtype) + "; it must be " +
-                     std::to_string(dtype) + (dtype == kFloat32 ? " (float32)" : " (uint8)"));
+      Fail(name,
+           "has type number " + std::to_string(field.dtype) + "; it must be " +
+               std::to_string(dtype) + (dtype == kFloat32 ? " (float32)" : " (uint8)"),
+           ErrorKind::kFormat, std::to_string(field.dtype));
     }
     if (field.shape.size() != static_cast<size_t>(ndim)) {
-      Fail(name, "has " + std::to_string(field.shape.size()) + " dimensions; it must have " +
-                     std::to_string(ndim));
+      Fail(name,
+           "has " + std::to_string(field.shape.size()) + " dimensions; it must have " +
+               std::to_string(ndim),
+           ErrorKind::kMismatch, std::to_string(field.shape.size()));
     }
     return field;
   }
-  Fail(name, "is missing; a material of the RGL database has it");
+  Fail(name, "is missing; a material of the RGL database has it", ErrorKind::kMissing);
 }
 
 Tensor TensorFile::Float32(std::string_view name, int ndim) const {
@@ -164,7 +184,8 @@ Tensor TensorFile::Float32(std::string_view name, int ndim) const {
   for (size_t i = 0; i < tensor.values.size(); ++i) {
     tensor.values[i] = LoadLittleEndian<float>(field.data.data() + i * sizeof(float));
     if (!std::isfinite(tensor.values[i])) {
-      Fail(name, "has an entry that is not finite: number " + std::to_string(i));
+      Fail(name, "has an entry that is not finite: number " + std::to_string(i), ErrorKind::kRange,
+           std::to_string(i));
     }
   }
   return tensor;
@@ -180,7 +201,7 @@ std::string_view TensorFile::Bytes(std::string_view name) const {
 
 uint8_t TensorFile::Byte(std::string_view name) const {
   const Field& field = Find(name, kUint8, 1);
-  if (field.data.size() != 1) Fail(name, "must have one entry");
+  if (field.data.size() != 1) Fail(name, "must have one entry", ErrorKind::kFormat);
   return LoadLittleEndian<uint8_t>(field.data.data());
 }
 
@@ -188,7 +209,10 @@ void TensorFileWriter::AddFloat32(const std::string& name, const std::vector<int
                                   const std::vector<float>& values) {
   size_t count = 1;
   for (const int size : shape) count *= static_cast<size_t>(size);
-  if (count != values.size()) throw Error("field " + Quote(name) + " has another size than shape");
+  if (count != values.size()) {
+    throw Error(ErrorKind::kMismatch, "field " + Quote(name) + " has another size than shape")
+        .About(name, values.size());
+  }
   std::string data(values.size() * sizeof(float), '\0');
   std::memcpy(data.data(), values.data(), data.size());
   fields_.push_back({name, kFloat32, shape, std::move(data)});

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "trilobe/core/base/error.h"
+
 namespace trilobe {
 
 // A dense array of finite numbers, last dimension fastest.
@@ -38,7 +40,8 @@ class TensorFile {
   uint8_t Byte(std::string_view name) const;
 
   // Throws Error with file, field and problem.
-  [[noreturn]] void Fail(std::string_view field, const std::string& problem) const;
+  [[noreturn]] void Fail(std::string_view field, const std::string& problem,
+                         ErrorKind kind = ErrorKind::kFormat, std::string_view value = "") const;
 
  private:
   struct Field {

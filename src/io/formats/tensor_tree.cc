@@ -33,14 +33,14 @@ PolarAngles OverSquare(double x, double y) {
 
 class TreeReader {
  public:
-  TreeReader(std::string_view text, int rank, const std::function<void(const std::string&)>& fail,
+  TreeReader(std::string_view text, int rank, const TreeFailure& fail,
              const std::function<void(const SphericalAngles&, double)>& add)
       : rest_(text), rank_(rank), fail_(fail), add_(add) {}
 
   void Read() {
     ReadNode({}, 0);
     Skip();
-    if (!rest_.empty()) fail_("there is more after the tensor tree");
+    if (!rest_.empty()) fail_("there is more after the tensor tree", "more");
   }
 
  private:
@@ -56,8 +56,8 @@ class TreeReader {
 
   void ReadNode(const Cell& cell, int depth) {
     constexpr int kDeepest = 16;
-    if (depth > kDeepest) fail_("a tensor tree deeper than 16 levels");
-    if (!Take('{')) fail_("expected { in the tensor tree");
+    if (depth > kDeepest) fail_("a tensor tree deeper than 16 levels", "levels");
+    if (!Take('{')) fail_("expected { in the tensor tree", "{");
     Skip();
     if (rest_.starts_with('{')) {
       for (int child = 0; child < 1 << rank_; ++child) {
@@ -70,7 +70,7 @@ class TreeReader {
     } else {
       ReadGrid(cell);
     }
-    if (!Take('}')) fail_("expected } in the tensor tree");
+    if (!Take('}')) fail_("expected } in the tensor tree", "}");
   }
 
   // A value, or a grid of as many along each axis, a power of two; the last axis is the fastest.
@@ -80,9 +80,9 @@ class TreeReader {
       const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n,{}"));
       const std::optional<double> value = ToNumber(word);
       if (!value) {
-        fail_(std::string("'")
-                  .append(word.substr(0, 40))
-                  .append("' in the tensor tree is no number"));
+        fail_(
+            std::string("'").append(word.substr(0, 40)).append("' in the tensor tree is no number"),
+            word);
       }
       values.push_back(*value);
       rest_.remove_prefix(word.size());
@@ -91,7 +91,8 @@ class TreeReader {
     while (level * rank_ < 40 && size_t{1} << level * rank_ < values.size()) ++level;
     if (size_t{1} << level * rank_ != values.size()) {
       fail_(std::to_string(values.size()) + " values in a leaf of a tensor tree of rank " +
-            std::to_string(rank_));
+                std::to_string(rank_),
+            std::to_string(values.size()));
     }
     const double size = cell.size / (1 << level);
     for (size_t n = 0; n < values.size(); ++n) {
@@ -123,14 +124,13 @@ class TreeReader {
 
   std::string_view rest_;
   int rank_;
-  const std::function<void(const std::string&)>& fail_;
+  const TreeFailure& fail_;
   const std::function<void(const SphericalAngles&, double)>& add_;
 };
 
 }  // namespace
 
-void ReadTensorTree(std::string_view text, int rank,
-                    const std::function<void(const std::string&)>& fail,
+void ReadTensorTree(std::string_view text, int rank, const TreeFailure& fail,
                     const std::function<void(const SphericalAngles&, double)>& add) {
   TreeReader(text, rank, fail, add).Read();
 }

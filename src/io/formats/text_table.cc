@@ -135,7 +135,8 @@ void CheckLines(std::string_view text, const std::string& source) {
     if (lines.line().size() <= kMostCells) continue;
     for (const char separator : kSeparators) {
       if (std::ranges::count(lines.line(), separator) < kMostCells) continue;
-      lines.Fail("more than " + std::to_string(kMostCells) + " cells, which no table has");
+      lines.Fail("more than " + std::to_string(kMostCells) + " cells, which no table has",
+                 ErrorKind::kLimit, "columns");
     }
   }
 }
@@ -237,7 +238,8 @@ TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view te
     by_names.lines = next;
     ++by_names.lines_before;
   }
-  throw Error(source + ": no line holds numbers for --columns");
+  throw ErrorIn(ErrorKind::kMissing, source, "no line holds numbers for --columns")
+      .About("columns");
 }
 
 std::vector<size_t> PositionsOf(std::string_view name, const std::vector<std::string>& names) {
@@ -277,8 +279,9 @@ TableHead TableHeadWith(const std::vector<std::string>& wanted, std::string_view
     if (!comment) ++before;
   }
   if (most > 0) return best;
-  throw Error(source + ": no line above the rows names a column '" + wanted.front() +
-              "', as --columns does");
+  throw ErrorIn(ErrorKind::kMissing, source,
+                "no line above the rows names a column '" + wanted.front() + "', as --columns does")
+      .About("columns", wanted.front());
 }
 
 void GoToRows(TableHead* head) {

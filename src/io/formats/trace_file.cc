@@ -45,15 +45,23 @@ bool TakeEnding(std::string_view ending, std::string_view* text) {
 
 int CountCells(std::string_view row) { return static_cast<int>(std::ranges::count(row, ',')) + 1; }
 
+Error TraceError(const std::string& source, int line, const std::string& problem) {
+  return Error(ErrorKind::kFormat, source + ": line " + std::to_string(line) + ": " + problem)
+      .At(source, line);
+}
+
 // One row, read from left to right.
 class Row {
  public:
   // Throws Error unless there are as many cells as columns.
-  Row(std::string_view text, int columns, const std::string& where) : rest_(text), where_(where) {
+  Row(std::string_view text, int columns, const std::string& source, int line)
+      : rest_(text), source_(source), line_(line) {
     const int cells = CountCells(text);
     if (cells != columns) {
-      throw Error(where + ": " + std::to_string(cells) + " columns; this trace has " +
-                  std::to_string(columns));
+      throw TraceError(
+          source, line,
+          std::to_string(cells) + " columns; this trace has " + std::to_string(columns))
+          .About("columns", cells);
     }
   }
 
@@ -64,14 +72,17 @@ class Row {
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error != std::errc() || end != cell.data() + cell.size() || !(value >= T{0}) ||
         !std::isfinite(static_cast<double>(value))) {
-      throw Error(where_ + ": " + column + " must be a finite number >= 0");
+      throw TraceError(source_, line_, std::string(column) + " must be a finite number >= 0")
+          .About(column, cell);
     }
     return value;
   }
 
   bool TakeBool(const char* column) {
     const std::string_view cell = TakeUntil(',', &rest_);
-    if (cell != "0" && cell != "1") throw Error(where_ + ": " + column + " must be 0 or 1");
+    if (cell != "0" && cell != "1") {
+      throw TraceError(source_, line_, std::string(column) + " must be 0 or 1").About(column, cell);
+    }
     return cell == "1";
   }
 
@@ -85,7 +96,8 @@ class Row {
 
  private:
   std::string_view rest_;
-  const std::string& where_;
+  const std::string& source_;
+  int line_;
 };
 
 }  // namespace
@@ -127,14 +139,14 @@ std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string
   for (int line = 1; line == 1 || !text.empty(); ++line) {
     std::string_view content = TakeUntil('\n', &text);
     if (content.ends_with('\r')) content.remove_suffix(1);  // saved by a spreadsheet
-    const std::string where = source + ": line " + std::to_string(line);
     if (line == 1) {
       with_prior = TakeEnding(kWithPrior, &content) || TakeEnding(kGuided, &content);
       with_processor = TakeEnding(kProcessor, &content);
       if (content == kHeader) continue;
-      throw Error(where + ": not a trace; the first line must be " + std::string(kHeader));
+      throw TraceError(source, line, "not a trace; the first line must be " + std::string(kHeader))
+          .About("header");
     }
-    Row row(content, CountCells(kHeader) + int{with_processor} + int{with_prior}, where);
+    Row row(content, CountCells(kHeader) + int{with_processor} + int{with_prior}, source, line);
     IterationRecord record;
     record.iteration = row.Take<int>("iteration");
     record.seconds = row.Take<double>("seconds");

@@ -140,9 +140,11 @@ Measurement ParseUtia(std::string_view bytes, const std::string& source,
   const UtiaRadiometry& meaning = FindNamed("radiometry", radiometry, UtiaRadiometries());
   if (const size_t size = Bytes(grid); bytes.size() != size) {
     const std::string nodes = std::to_string(grid.nodes());
-    throw Error(source + ": " + std::to_string(bytes.size()) + " bytes; a UTIA file has " +
-                std::to_string(size) + ", 3 x " + nodes + " x " + nodes + " float64" +
-                (bytes.size() < size ? "; get it once more" : ""));
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  std::to_string(bytes.size()) + " bytes; a UTIA file has " + std::to_string(size) +
+                      ", 3 x " + nodes + " x " + nodes + " float64" +
+                      (bytes.size() < size ? "; get it once more" : ""))
+        .About("bytes", bytes.size());
   }
   std::vector<double> stored(bytes.size() / sizeof(double));
   std::memcpy(stored.data(), bytes.data(), bytes.size());

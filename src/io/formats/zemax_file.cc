@@ -52,7 +52,8 @@ struct ZemaxHeader {
                                   const std::vector<std::string_view>& known,
                                   std::string_view word) {
   if (word == "BTDF") {
-    lines.Fail("ScatterType is BTDF: these are transmitted light; only reflection can be read");
+    lines.Fail("ScatterType is BTDF: these are transmitted light; only reflection can be read",
+               ErrorKind::kUnsupported, key, word);
   }
   std::string expected;
   for (const std::string_view one : known) {
@@ -64,11 +65,13 @@ struct ZemaxHeader {
 
 void CheckIsWhole(const std::map<std::string_view, bool>& seen, const TextLines& lines) {
   for (const AngleList& list : kListSpecs) {
-    if (!seen.contains(list.key)) lines.Fail(std::string("the header has no ") + list.key);
+    if (!seen.contains(list.key)) {
+      lines.Fail(std::string("the header has no ") + list.key, ErrorKind::kMissing, list.key);
+    }
   }
   for (const auto& [key, values] : Words()) {
     if (key != "Source" && !seen.contains(key)) {
-      lines.Fail("the header has no " + std::string(key));
+      lines.Fail("the header has no " + std::string(key), ErrorKind::kMissing, key);
     }
   }
 }
@@ -87,7 +90,9 @@ ZemaxHeader ReadZemaxHeader(TextLines* lines) {
       header.first = words[0];
       continue;
     }
-    if (words.size() != 2) lines->Fail("expected a key and its value, or DataBegin");
+    if (words.size() != 2) {
+      lines->Fail("expected a key and its value, or DataBegin", ErrorKind::kFormat, "DataBegin");
+    }
     const auto list = std::ranges::find_if(
         kListSpecs, [&](const AngleList& spec) { return words[0] == spec.key; });
     const auto word = Words().find(words[0]);
@@ -102,14 +107,17 @@ ZemaxHeader ReadZemaxHeader(TextLines* lines) {
       }
       if (key == "SpectralContent") header.content = words[1];
     } else {
-      lines->Fail(std::string("'").append(words[0].substr(0, 40)) + "' is no key of this format");
+      lines->Fail(std::string("'").append(words[0].substr(0, 40)) + "' is no key of this format",
+                  ErrorKind::kUnknown, "header", words[0]);
     }
   }
-  lines->Fail("the file ends before DataBegin");
+  lines->Fail("the file ends before DataBegin", ErrorKind::kMissing, "DataBegin");
 }
 
 void GoTo(const char* what, TextLines* lines) {
-  if (!lines->Next()) lines->Fail(std::string("the file ends before ") + what);
+  if (!lines->Next()) {
+    lines->Fail(std::string("the file ends before ") + what, ErrorKind::kMissing, what);
+  }
 }
 
 // The values of a block, by rotation, incidence, azimuth and distance, after DataBegin.
@@ -119,7 +127,8 @@ std::vector<double> ReadZemaxBlock(const ZemaxHeader& header, TextLines* lines) 
   for (size_t k = 0; k < rotations.size() * incidences.size(); ++k) {
     GoTo("TIS", lines);
     if (SplitWords(lines->line())[0] != "TIS") {
-      lines->Fail("expected TIS, at the beginning of an angle of incidence");
+      lines->Fail("expected TIS, at the beginning of an angle of incidence", ErrorKind::kFormat,
+                  "TIS");
     }
     for (size_t a = 0; a < azimuths.size(); ++a) {
       GoTo("the last azimuth", lines);
@@ -129,7 +138,10 @@ std::vector<double> ReadZemaxBlock(const ZemaxHeader& header, TextLines* lines) 
     }
   }
   GoTo("DataEnd", lines);
-  if (lines->line() != "DataEnd") lines->Fail("expected DataEnd: there are more data than angles");
+  if (lines->line() != "DataEnd") {
+    lines->Fail("expected DataEnd: there are more data than angles", ErrorKind::kMismatch,
+                "DataEnd");
+  }
   return values;
 }
 
@@ -137,15 +149,18 @@ std::vector<double> ReadZemaxBlock(const ZemaxHeader& header, TextLines* lines) 
 std::vector<std::vector<double>> ReadZemaxBlocks(const ZemaxHeader& header, TextLines* lines) {
   const std::vector<std::string_view> names = BlocksOf(header.content);
   if (names.size() > 1 && header.first != names[0]) {
-    lines->Fail("expected the line " + std::string(names[0]) + " before DataBegin");
+    lines->Fail("expected the line " + std::string(names[0]) + " before DataBegin",
+                ErrorKind::kMissing, names[0]);
   }
   std::vector<std::vector<double>> blocks = {ReadZemaxBlock(header, lines)};
   while (blocks.size() < names.size()) {
     const std::string name(names[blocks.size()]);
     GoTo(name.c_str(), lines);
-    if (lines->line() != name) lines->Fail("expected " + name);
+    if (lines->line() != name) lines->Fail("expected " + name, ErrorKind::kFormat, name);
     GoTo("DataBegin", lines);
-    if (lines->line() != "DataBegin") lines->Fail("expected DataBegin");
+    if (lines->line() != "DataBegin") {
+      lines->Fail("expected DataBegin", ErrorKind::kFormat, "DataBegin");
+    }
     blocks.push_back(ReadZemaxBlock(header, lines));
   }
   return blocks;

@@ -16,7 +16,8 @@ std::string_view WebText(std::string_view name) {
   for (const EmbeddedFile& file : WebFiles()) {
     if (file.name == name) return file.text;
   }
-  throw Error("the program was built without web/" + std::string(name));
+  throw Error(ErrorKind::kMissing, "the program was built without web/" + std::string(name))
+      .About("web", name);
 }
 
 namespace {
@@ -62,7 +63,9 @@ void AddModule(std::string_view name, std::vector<std::string>* added, std::stri
     if (line.starts_with("import ")) {
       const size_t from = line.find("'./"), quote = line.rfind('\'');
       if (from == std::string_view::npos || quote < from + 3) {
-        throw Error("web/" + std::string(name) + ": an import that is not of one line");
+        throw Error(ErrorKind::kFormat,
+                    "web/" + std::string(name) + ": an import that is not of one line")
+            .About("web", name);
       }
       AddModule(line.substr(from + 3, quote - from - 3), added, script);
       continue;
@@ -132,8 +135,9 @@ std::string FormatDocument(std::string_view name, std::string_view title, std::s
       policy_at = page.size();
       images = file;
     } else {
-      throw Error("web/" + std::string(name) + ": nothing is known to stand for " +
-                  std::string(what));
+      throw Error(ErrorKind::kUnknown, "web/" + std::string(name) +
+                                           ": nothing is known to stand for " + std::string(what))
+          .About("web", what);
     }
   }
   page += rest;

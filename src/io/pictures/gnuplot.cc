@@ -103,7 +103,10 @@ std::string RunGnuplot(const std::string& path, const PictureFormat& format,
                      err = MakeNamelessFile(path);
   if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
       std::fflush(in.get()) != 0) {
-    throw Error("cannot write what gnuplot reads beside '" + path + "': " + std::strerror(errno));
+    throw Error(ErrorKind::kFile,
+                "cannot write what gnuplot reads beside '" + path + "': " + std::strerror(errno))
+        .At(path)
+        .About("write", std::strerror(errno));
   }
   std::rewind(in.get());
 
@@ -122,26 +125,34 @@ std::string RunGnuplot(const std::string& path, const PictureFormat& format,
   const int failure = posix_spawnp(&pid, "gnuplot", &actions, &attributes, arguments, environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) throw Error(kNoGnuplot);
-  if (failure != 0) throw Error(std::string("cannot run gnuplot: ") + std::strerror(failure));
+  if (failure == ENOENT) throw Error(ErrorKind::kMissing, kNoGnuplot).About("gnuplot");
+  if (failure != 0) {
+    throw Error(ErrorKind::kFile, std::string("cannot run gnuplot: ") + std::strerror(failure))
+        .About("gnuplot", std::strerror(failure));
+  }
 
   const std::optional<int> status = WaitFor(pid, max_seconds);
   if (!status) {
     kill(-pid, SIGKILL);
     while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
     }
-    throw Error("gnuplot was stopped, as it had not drawn the picture after " +
-                GnuplotNumber(max_seconds) + " seconds");
+    throw Error(ErrorKind::kLimit, "gnuplot was stopped, as it had not drawn the picture after " +
+                                       GnuplotNumber(max_seconds) + " seconds")
+        .About("gnuplot", max_seconds);
   }
   if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0) {
-    throw Error("gnuplot failed: " + ErrorLine(ReadAll(err.get())));
+    throw Error(ErrorKind::kFile, "gnuplot failed: " + ErrorLine(ReadAll(err.get())))
+        .About("gnuplot", "failed");
   }
   std::string picture = ReadAll(out.get());
   if (!picture.starts_with(format.begins)) {
-    throw Error("gnuplot drew no picture: " + ErrorLine(ReadAll(err.get())));
+    throw Error(ErrorKind::kFile, "gnuplot drew no picture: " + ErrorLine(ReadAll(err.get())))
+        .About("gnuplot", "no picture");
   }
   if (!picture.ends_with(format.ends)) {
-    throw Error("gnuplot drew a part of the picture alone: " + ErrorLine(ReadAll(err.get())));
+    throw Error(ErrorKind::kFile,
+                "gnuplot drew a part of the picture alone: " + ErrorLine(ReadAll(err.get())))
+        .About("gnuplot", "part of a picture");
   }
   return picture;
 }
@@ -254,7 +265,7 @@ bool HaveGnuplot() {
 }
 
 void RequireGnuplot() {
-  if (!HaveGnuplot()) throw Error(kNoGnuplot);
+  if (!HaveGnuplot()) throw Error(ErrorKind::kMissing, kNoGnuplot).About("gnuplot");
 }
 
 namespace {
@@ -279,7 +290,9 @@ void DrawVectors(const std::string& path, int width, int height, const std::stri
                  double max_seconds) {
   const std::string ending = EndingOf(path);
   if (ending != ".svg" && ending != ".pdf") {
-    throw Error("'" + path + "': a picture of vectors is .svg or .pdf");
+    throw Error(ErrorKind::kUnsupported, "'" + path + "': a picture of vectors is .svg or .pdf")
+        .At(path)
+        .About("ending", ending);
   }
   Draw(path, FormatOf(ending, width, height), script, max_seconds);
 }

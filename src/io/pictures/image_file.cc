@@ -79,12 +79,14 @@ class RadianceReader {
   }
 
  private:
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(source_ + ": row " + std::to_string(row_) + " of the Radiance picture " + problem);
+  [[noreturn]] void Fail(const std::string& problem, ErrorKind kind, std::string_view key) const {
+    const std::string row = std::to_string(row_);
+    throw ErrorIn(kind, source_, "row " + row + " of the Radiance picture " + problem)
+        .About(key, row);
   }
 
   unsigned char Next() {
-    if (at_ >= bytes_.size()) Fail("is cut off");
+    if (at_ >= bytes_.size()) Fail("is cut off", ErrorKind::kFormat, "bytes");
     return static_cast<unsigned char>(bytes_[at_++]);
   }
 
@@ -94,7 +96,8 @@ class RadianceReader {
     for (Rgbe& pixel : *row) {
       for (unsigned char& byte : pixel) byte = Next();
       if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
-        Fail("is packed as it was before 1991; write it again by a newer program");
+        Fail("is packed as it was before 1991; write it again by a newer program",
+             ErrorKind::kUnsupported, "packing");
       }
     }
   }
@@ -103,13 +106,13 @@ class RadianceReader {
     const auto width = static_cast<int>(row->size());
     at_ += 2;
     const int high = Next();
-    if (high * 256 + Next() != width) Fail("has another length");
+    if (high * 256 + Next() != width) Fail("has another length", ErrorKind::kMismatch, "width");
     for (int k = 0; k < 4; ++k) {
       for (int x = 0; x < width;) {
         int count = Next();
         const bool run = count > 128;
         if (run) count -= 128;
-        if (count == 0 || count > width - x) Fail("is broken");
+        if (count == 0 || count > width - x) Fail("is broken", ErrorKind::kFormat, "runs");
         unsigned char byte = 0;
         for (int i = 0; i < count; ++i) {
           if (i == 0 || !run) byte = Next();
@@ -141,18 +144,24 @@ Environment ParseProbe(std::string_view bytes, const std::string& source) {
   if (!reader.ReadHeader(&width, &height)) {
     const Content content = RecogniseContent(bytes);
     const bool foreign = content.kind == Content::Kind::kForeign && !bytes.starts_with("#?");
-    throw Error(source + ": not a Radiance picture" + (foreign ? " but " + content.name : "") +
-                "; give a light probe as a lat-long .hdr file");
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  "not a Radiance picture" + (foreign ? " but " + content.name : "") +
+                      "; give a light probe as a lat-long .hdr file")
+        .About("content", content.name);
   }
   if (height < 2 || width / 2 != height || width % 2 != 0 || width > kMaxPixels / height) {
-    throw Error(source + ": the picture is " + std::to_string(width) + " x " +
-                std::to_string(height) +
-                " pixels; a probe in latitude and longitude is twice as wide as high, and has at "
-                "most 33 million pixels");
+    throw ErrorIn(
+        ErrorKind::kRange, source,
+        "the picture is " + std::to_string(width) + " x " + std::to_string(height) +
+            " pixels; a probe in latitude and longitude is twice as wide as high, and has at "
+            "most 33 million pixels")
+        .About("pixels", std::to_string(width) + " x " + std::to_string(height));
   }
   if (!reader.CanHold(width, height)) {
-    throw Error(source + ": the Radiance picture is cut off; its " + std::to_string(width) + " x " +
-                std::to_string(height) + " pixels are not all there");
+    throw ErrorIn(ErrorKind::kFormat, source,
+                  "the Radiance picture is cut off; its " + std::to_string(width) + " x " +
+                      std::to_string(height) + " pixels are not all there")
+        .About("bytes");
   }
   Environment environment{source, width, height, {}};
   environment.radiance.reserve(static_cast<size_t>(width) * height);
@@ -177,7 +186,7 @@ void WritePng(const std::string& path, int width, int height, const std::string&
   };
   if (stbi_write_png_to_func(append, &png, width, height, kChannels, pixels.data(),
                              width * kChannels) == 0) {
-    throw Error(path + ": cannot encode the picture");
+    throw ErrorIn(ErrorKind::kFile, path, "cannot encode the picture").About("write");
   }
   WriteFile(path, [&](std::ostream& out) { out << MarkedPicture(std::move(png)); });
 }

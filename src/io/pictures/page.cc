@@ -179,7 +179,8 @@ void AddFloat(double x, std::string* bytes) {
 
 MeasuredData EncodeMeasured(const BrdfSamples& samples, double max_theta, bool anisotropic) {
   if (samples.directions.size() != samples.rho.size()) {
-    throw Error(samples.source + ": samples without directions");
+    throw ErrorIn(ErrorKind::kMissing, samples.source, "samples without directions")
+        .About("directions");
   }
   MeasuredData data;
   data.kind = MeasuredData::Kind::kSamples;

@@ -49,7 +49,9 @@ std::string Curve(int column, const std::string& color, const std::string& title
 void DrawBands(const SpectralModel& model, std::span<const double> relative_error,
                const std::string& title, const std::string& path) {
   if (static_cast<int>(relative_error.size()) != model.bands()) {
-    throw Error("a spectral model is drawn with the error of each of its wavelengths");
+    throw Error(ErrorKind::kMismatch,
+                "a spectral model is drawn with the error of each of its wavelengths")
+        .About("relative_error", relative_error.size());
   }
   const int lobes = model.spec().lobes;
   const double first = model.wavelengths().front(), last = model.wavelengths().back();

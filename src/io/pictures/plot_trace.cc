@@ -10,7 +10,10 @@ namespace trilobe {
 
 void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path) {
-  if (trace.empty()) throw Error("the trace has no record, so there is nothing to draw");
+  if (trace.empty()) {
+    throw Error(ErrorKind::kMissing, "the trace has no record, so there is nothing to draw")
+        .About("trace");
+  }
   CheckDrawable({}, trace);
   // Iteration, seconds, E that the solver lowers, filtered, rejected, E of the data.
   std::vector<std::vector<double>> rows;

@@ -61,7 +61,10 @@ std::string Legend(int number, const char* text, const char* color, int point_ty
 }  // namespace
 
 void DrawTradeOff(std::span<const TradeOff> models, const std::string& path) {
-  if (models.empty()) throw Error("there is no model to compare, so there is nothing to draw");
+  if (models.empty()) {
+    throw Error(ErrorKind::kMissing, "there is no model to compare, so there is nothing to draw")
+        .About("models");
+  }
   std::vector<std::vector<double>> rows;
   std::string names, ticks;
   for (size_t k = 0; k < models.size(); ++k) {

@@ -39,13 +39,16 @@ void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace
   const std::string name = "the model" + (file.fit.source.empty() ? "" : " of " + file.fit.source);
   const double largest = std::ranges::max(file.model.parameters());
   if (!(std::max(largest, Bound(file.model)) <= kLargest)) {
-    throw Error(name + " goes beyond 1e200, too far to draw; its factors are too large");
+    throw Error(ErrorKind::kData,
+                name + " goes beyond 1e200, too far to draw; its factors are too large")
+        .About("model", name);
   }
   for (const IterationRecord& record : trace) {
     const double E = std::max(record.objective, record.minimised());
     if (E <= kLargest && record.seconds <= kLargest) continue;
-    throw Error("row " + std::to_string(record.iteration) +
-                " of the trace goes beyond 1e200, too far to draw");
+    throw Error(ErrorKind::kData, "row " + std::to_string(record.iteration) +
+                                      " of the trace goes beyond 1e200, too far to draw")
+        .About("trace", record.iteration);
   }
 }
 

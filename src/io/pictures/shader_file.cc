@@ -29,7 +29,9 @@ namespace {
 
 float ToFloat(double x) {
   if (!(std::abs(x) <= std::numeric_limits<float>::max())) {
-    throw Error("the model's values overflow a shader's numbers; its factors are too large");
+    throw Error(ErrorKind::kData,
+                "the model's values overflow a shader's numbers; its factors are too large")
+        .About("model", "overflow");
   }
   return static_cast<float>(x);
 }

@@ -195,7 +195,9 @@ void CheckFinite(const AppearanceReport& report, const std::string& source) {
                          report.albedo.mean, report.at_centers.log, report.at_centers.relative,
                          report.between_centers.log, report.between_centers.relative, largest}) {
     if (!std::isfinite(x)) {
-      throw Error(source + ": the model's values overflow; its factors are too large");
+      throw ErrorIn(ErrorKind::kData, source,
+                    "the model's values overflow; its factors are too large")
+          .About("model", "overflow");
     }
   }
 }

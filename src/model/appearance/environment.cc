@@ -99,15 +99,18 @@ void CheckEnvironment(const Environment& environment) {
   const int width = environment.width, height = environment.height;
   if (width < 1 || height < 1 ||
       environment.radiance.size() != static_cast<size_t>(width) * height) {
-    throw Error(environment.name + ": an environment of " + std::to_string(width) + " x " +
-                std::to_string(height) + " pixels with the radiance of " +
-                std::to_string(environment.radiance.size()));
+    throw ErrorIn(ErrorKind::kMismatch, environment.name,
+                  "an environment of " + std::to_string(width) + " x " + std::to_string(height) +
+                      " pixels with the radiance of " + std::to_string(environment.radiance.size()))
+        .About("radiance", environment.radiance.size());
   }
   for (const Rgb& pixel : environment.radiance) {
     for (const double x : pixel) {
       if (x >= 0 && std::isfinite(x)) continue;
-      throw Error(environment.name + ": the radiance of a pixel is " + std::to_string(x) +
-                  "; it must be finite and 0 or more");
+      throw ErrorIn(
+          ErrorKind::kRange, environment.name,
+          "the radiance of a pixel is " + std::to_string(x) + "; it must be finite and 0 or more")
+          .About("radiance", x);
     }
   }
 }
@@ -131,7 +134,9 @@ std::vector<Light> DrawLights(const Environment& environment, int count) {
   }
   const double total = row_sums.back();
   if (!(total > 0 && std::isfinite(total))) {
-    throw Error(environment.name + ": the environment has no light; give one that is not black");
+    throw ErrorIn(ErrorKind::kData, environment.name,
+                  "the environment has no light; give one that is not black")
+        .About("radiance", total);
   }
   std::vector<Light> lights;
   for (int k = 0; k < count; ++k) {

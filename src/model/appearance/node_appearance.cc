@@ -120,8 +120,10 @@ Measurement ReconstructAtNodes(const FactorModel& model, const std::string& sour
       Rgb rho = brdf(at);
       for (double& x : rho) {
         if (!std::isfinite(x)) {
-          throw Error(source + ": the model's value overflows at nodes " + std::to_string(i) +
-                      " and " + std::to_string(o) + "; its factors are too large");
+          throw ErrorIn(ErrorKind::kData, source,
+                        "the model's value overflows at nodes " + std::to_string(i) + " and " +
+                            std::to_string(o) + "; its factors are too large")
+              .About("model", "overflow");
         }
         x = std::max(x, 0.0);
       }

@@ -109,11 +109,14 @@ PictureData PictureDataOf(const Measurement& measurement,
 
 void CheckIsotropic(const PictureData& measured, const Material& fitted) {
   if (measured.table == nullptr) {
-    throw Error("scattered samples that stand on no grid of directions make no picture");
+    throw Error(ErrorKind::kUnsupported,
+                "scattered samples that stand on no grid of directions make no picture")
+        .About("grid");
   }
   if (!fitted.angular) {
-    throw Error(measured.table->source +
-                ": a table knows no azimuths, which an anisotropic model needs");
+    throw ErrorIn(ErrorKind::kUnsupported, measured.table->source,
+                  "a table knows no azimuths, which an anisotropic model needs")
+        .About("anisotropic");
   }
 }
 

@@ -21,7 +21,9 @@ void AddScaled(const Rgb& value, double scale, Rgb* sum) {
 Rgb DirectionalAlbedo(const BrdfFunction& brdf, double theta_i) {
   CheckNotEmpty(brdf, "brdf");
   if (!(theta_i >= 0 && theta_i < kPi / 2)) {
-    throw Error("theta_i is " + std::to_string(theta_i) + "; it must be from 0 to below pi/2");
+    throw Error(ErrorKind::kRange,
+                "theta_i is " + std::to_string(theta_i) + "; it must be from 0 to below pi/2")
+        .About("theta_i", theta_i);
   }
   Rgb albedo{};
   VisitReflected(theta_i, kAlbedoAzimuths, [&](const DirectionPair& pair, double weight) {
@@ -43,9 +45,11 @@ std::vector<Rgb> DirectionalAlbedos(const BrdfFunction& brdf, std::span<const do
 std::optional<double> AlbedoPassesOne(std::span<const double> theta_i, std::span<const Rgb> albedo,
                                       int channel) {
   if (theta_i.size() != albedo.size() || channel < 0 || channel >= kChannels) {
-    throw Error("each angle needs an albedo of channel 0, 1 or 2; there are " +
-                std::to_string(theta_i.size()) + " angles, " + std::to_string(albedo.size()) +
-                " albedos, and channel " + std::to_string(channel));
+    throw Error(ErrorKind::kMismatch,
+                "each angle needs an albedo of channel 0, 1 or 2; there are " +
+                    std::to_string(theta_i.size()) + " angles, " + std::to_string(albedo.size()) +
+                    " albedos, and channel " + std::to_string(channel))
+        .About("albedo", albedo.size());
   }
   for (size_t i = 0; i < albedo.size(); ++i) {
     const double here = albedo[i][channel];

@@ -18,19 +18,20 @@
 namespace trilobe {
 namespace {
 
-[[noreturn]] void Fail(const BrdfSamples& samples, const std::string& problem) {
-  throw Error(samples.source + ": " + problem);
-}
-
-[[noreturn]] void FailAt(const BrdfSamples& samples, int j, const std::string& problem) {
-  Fail(samples, "sample " + std::to_string(j) + " " + problem);
+// An error about sample j.
+[[noreturn]] void FailAt(const BrdfSamples& samples, int j, const std::string& problem,
+                         std::string_view value) {
+  const std::string key = "sample " + std::to_string(j);
+  throw ErrorIn(ErrorKind::kRange, samples.source, key + " " + problem).About(key, value);
 }
 
 void CheckSizes(const BrdfSamples& samples) {
   const auto check = [&](const char* what, size_t size) {
     if (size == samples.rho.size()) return;
-    Fail(samples, std::to_string(samples.rho.size()) + " samples have " + std::to_string(size) +
-                      " " + what + "; each needs one");
+    throw ErrorIn(ErrorKind::kMismatch, samples.source,
+                  std::to_string(samples.rho.size()) + " samples have " + std::to_string(size) +
+                      " " + what + "; each needs one")
+        .About(what, size);
   };
   if (samples.on_grid()) {
     check("bins", samples.bins.size());
@@ -53,13 +54,15 @@ void CheckBins(const BrdfSamples& samples) {
       FailAt(samples, j,
              "is in bin " + std::to_string(bin) + " of " + std::to_string(grid.size()) +
                  (last < 0 ? "" : ", after one in bin " + std::to_string(last)) +
-                 "; bins must exist and ascend");
+                 "; bins must exist and ascend",
+             "bin " + std::to_string(bin));
     }
     const auto [cos_i, cos_o] = cosines(bin);
     if (!(cos_i > 0 && cos_o > 0)) {
-      FailAt(samples, j,
-             "is in bin " + std::to_string(bin) +
-                 ", at whose centre a direction is below the surface");
+      FailAt(
+          samples, j,
+          "is in bin " + std::to_string(bin) + ", at whose centre a direction is below the surface",
+          "below the surface");
     }
     last = bin;
   }
@@ -70,14 +73,14 @@ void CheckAngles(const BrdfSamples& samples) {
     try {
       CheckAngles(samples.angles[j]);
     } catch (const Error& error) {
-      FailAt(samples, j, std::string("is at angles that are none: ") + error.what());
+      FailAt(samples, j, std::string("is at angles that are none: ") + error.what(), "angles");
     }
     const Cosines cosines = ToCosines(samples.angles[j]);
     if (!(cosines.i > 0 && cosines.o > 0)) {
-      FailAt(samples, j, "has a direction below the surface");
+      FailAt(samples, j, "has a direction below the surface", "below the surface");
     }
     if (!samples.directions.empty() && !IsAboveSurface(samples.directions[j])) {
-      FailAt(samples, j, "has a direction that is none, or below the surface");
+      FailAt(samples, j, "has a direction that is none, or below the surface", "directions");
     }
   }
 }
@@ -112,18 +115,23 @@ void CheckSamples(const BrdfSamples& samples) {
                      AreValid(samples.multiplicity);
   for (int j = 0; j < samples.size() && !valid; ++j) {
     for (const double rho : samples.rho[j]) {
-      if (!IsValid(rho)) FailAt(samples, j, "is " + Text(rho, 6) + "/sr; it must be 0 or more");
+      if (!IsValid(rho)) {
+        FailAt(samples, j, "is " + Text(rho, 6) + "/sr; it must be 0 or more", FactText(rho));
+      }
     }
     if (!IsValid(samples.Multiplicity(j))) {
       FailAt(samples, j,
-             "counts " + Text(samples.multiplicity[j], 6) + " times; it must be 0 or more");
+             "counts " + Text(samples.multiplicity[j], 6) + " times; it must be 0 or more",
+             "multiplicity");
     }
   }
 }
 
 void BrdfSamples::SetSpectra(Spectra new_spectra) {
   if (new_spectra.values.size() != rho.size() * new_spectra.bands()) {
-    Fail(*this, std::to_string(rho.size()) + " samples need a spectrum each");
+    throw ErrorIn(ErrorKind::kMismatch, source,
+                  std::to_string(rho.size()) + " samples need a spectrum each")
+        .About("spectra", new_spectra.values.size());
   }
   spectra = std::make_shared<const Spectra>(std::move(new_spectra));
   spectrum_rows.resize(rho.size());
@@ -157,14 +165,15 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
     samples.rho.push_back({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
   }
   if (samples.rho.empty()) {
-    throw Error(
-        table.source +
-        ": no valid bin: nowhere are both directions above the surface and all three "
-        "values finite and >= 0" +
-        (table.unmeasured.empty()
-             ? "; check that the file is a BRDF in MERL layout"
-             : " where it was measured; --max_angle, --min_theta_d and --extrapolated say what "
-               "counts"));
+    throw ErrorIn(
+        ErrorKind::kData, table.source,
+        std::string("no valid bin: nowhere are both directions above the surface and all three "
+                    "values finite and >= 0") +
+            (table.unmeasured.empty()
+                 ? "; check that the file is a BRDF in MERL layout"
+                 : " where it was measured; --max_angle, --min_theta_d and --extrapolated say what "
+                   "counts"))
+        .About("bins");
   }
   return samples;
 }
@@ -183,8 +192,10 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
   reserve(samples.multiplicity, &selected.multiplicity);
   for (const int j : numbers) {
     if (j < 0 || j >= samples.size()) {
-      Fail(samples,
-           "there is no sample " + std::to_string(j) + " among " + std::to_string(samples.size()));
+      throw ErrorIn(
+          ErrorKind::kRange, samples.source,
+          "there is no sample " + std::to_string(j) + " among " + std::to_string(samples.size()))
+          .About("sample", j);
     }
     if (samples.on_grid()) {
       selected.bins.push_back(samples.bins[j]);
@@ -204,8 +215,9 @@ namespace {
 
 void CheckStride(int stride) {
   if (stride >= 1) return;
-  throw Error("samples cannot be thinned by " + std::to_string(stride) +
-              "; give a stride of 1 or more");
+  throw Error(ErrorKind::kRange, "samples cannot be thinned by " + std::to_string(stride) +
+                                     "; give a stride of 1 or more")
+      .About("stride", stride);
 }
 
 // A phase of each grid sample, equal for exchanged pairs, such that samples with phases divisible
@@ -256,7 +268,10 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
 BrdfSamples InEveryOtherRow(const BrdfSamples& samples) {
   CheckSizes(samples);
   CheckGrid(samples.grid);
-  if (!samples.on_grid()) throw Error(samples.source + ": scattered samples have no rows");
+  if (!samples.on_grid()) {
+    throw ErrorIn(ErrorKind::kUnsupported, samples.source, "scattered samples have no rows")
+        .About("rows");
+  }
   const MerlGrid& grid = samples.grid;
   std::vector<int> kept;
   for (int j = 0; j < samples.size(); ++j) {
@@ -273,8 +288,10 @@ BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride) {
   CheckGrid(samples.grid);
   const MerlGrid& fine = samples.grid;
   if (!samples.on_grid() || fine.theta_h % 2 != 0 || fine.theta_d % 2 != 0) {
-    throw Error(samples.source + ": means of four bins are of samples on a grid with an even " +
-                "number of theta_h and of theta_d");
+    throw ErrorIn(ErrorKind::kUnsupported, samples.source,
+                  "means of four bins are of samples on a grid with an even "
+                  "number of theta_h and of theta_d")
+        .About("bins");
   }
   const MerlGrid grid{
       .theta_h = fine.theta_h / 2, .theta_d = fine.theta_d / 2, .phi_d = fine.phi_d};
@@ -320,7 +337,9 @@ BrdfSamples EvenlySpread(const BrdfSamples& samples, int count) {
 BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {
   CheckStride(stride);
   if (least < 1) {
-    throw Error("at least " + std::to_string(least) + " samples a place; give 1 or more");
+    throw Error(ErrorKind::kRange,
+                "at least " + std::to_string(least) + " samples a place; give 1 or more")
+        .About("least", least);
   }
   CheckSamples(samples);
   // Bins of theta_h, theta_d, theta_i and theta_o; the last two may be exchanged and share a table.

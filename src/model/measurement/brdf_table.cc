@@ -14,12 +14,17 @@ void CheckTable(const BrdfTable& table) {
   const auto size = static_cast<size_t>(table.grid.size());
   for (const auto& plane : table.stored) {
     if (plane.size() == size) continue;
-    throw Error(table.source + ": a channel has " + std::to_string(plane.size()) +
-                " values, but the grid " + std::to_string(size) + " bins");
+    throw ErrorIn(ErrorKind::kMismatch, table.source,
+                  "a channel has " + std::to_string(plane.size()) + " values, but the grid " +
+                      std::to_string(size) + " bins")
+        .About("stored", plane.size());
   }
   if (!table.unmeasured.empty() && table.unmeasured.size() != size) {
-    throw Error(table.source + ": " + std::to_string(table.unmeasured.size()) +
-                " bins are marked as measured or not, but the grid has " + std::to_string(size));
+    throw ErrorIn(ErrorKind::kMismatch, table.source,
+                  std::to_string(table.unmeasured.size()) +
+                      " bins are marked as measured or not, but the grid has " +
+                      std::to_string(size))
+        .About("unmeasured", table.unmeasured.size());
   }
 }
 
@@ -66,7 +71,10 @@ double MaxAngleDegrees(const BrdfTable& table) { return MaxAngleDegrees(table.ma
 
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
   CheckTable(NotNull(table, "the table"));
-  if (!(max_theta >= 0)) throw Error("the largest angle must be a number of 0 or more");
+  if (!(max_theta >= 0)) {
+    throw Error(ErrorKind::kRange, "the largest angle must be a number of 0 or more")
+        .About("max_theta", max_theta);
+  }
   if (max_theta >= table->max_theta) return;  // 90 degrees, say: nothing more to leave out
   table->max_theta = max_theta;
   table->unmeasured.resize(table->grid.size(), Unmeasured::kNo);
@@ -83,7 +91,10 @@ void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
 
 void LimitThetaD(double min_theta_d, BrdfTable* table) {
   CheckTable(NotNull(table, "the table"));
-  if (std::isnan(min_theta_d)) throw Error("the smallest theta_d must be a number");
+  if (std::isnan(min_theta_d)) {
+    throw Error(ErrorKind::kRange, "the smallest theta_d must be a number")
+        .About("min_theta_d", min_theta_d);
+  }
   if (!(min_theta_d > 0)) return;
   const std::vector<bool> above = BinsAboveSurface(table->grid);
   table->unmeasured.resize(table->grid.size(), Unmeasured::kNo);

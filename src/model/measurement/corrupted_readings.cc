@@ -81,11 +81,12 @@ Readings::Between Readings::ReadBetween() const {
   } else if (measurement_.formula) {
     rho = measurement_.formula;
   } else {
-    throw Error(
-        measurement_.source +
-        ": --tilt and the corruptions tilt, origin, aperture and repeat read between samples, "
+    throw ErrorIn(
+        ErrorKind::kUnsupported, measurement_.source,
+        "--tilt and the corruptions tilt, origin, aperture and repeat read between samples, "
         "which a table, an RGL file and a synthetic material allow before any other kind "
-        "has changed them, and scattered samples do not: leave them out");
+        "has changed them, and scattered samples do not: leave them out")
+        .About("tilt");
   }
   return [rho](const DirectionPair& pair) {
     return IsAbove(pair) ? std::optional(rho(pair)) : std::nullopt;

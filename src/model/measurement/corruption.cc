@@ -17,7 +17,8 @@ namespace {
 Corruption ParseOne(const std::string& text) {
   const size_t colon = text.find(':');
   if (colon == std::string::npos) {
-    throw Error("'" + text + "' is not KIND:STRENGTH, as noise:0.05");
+    throw Error(ErrorKind::kFormat, "'" + text + "' is not KIND:STRENGTH, as noise:0.05")
+        .About("corruption", text);
   }
   const CorruptionKind& kind =
       FindNamed("kind of corruption", text.substr(0, colon), CorruptionKinds());
@@ -27,7 +28,7 @@ Corruption ParseOne(const std::string& text) {
     std::ostringstream message;
     message << "'" << text << "': the strength of " << kind.name << " is a number from " << kind.min
             << " to " << kind.max << " [" << kind.unit << "]";
-    throw Error(message.str());
+    throw Error(ErrorKind::kRange, message.str()).About(kind.name, number);
   }
   return {.kind = &kind, .strength = *strength};
 }
@@ -104,7 +105,9 @@ void Corrupt(const std::vector<Corruption>& corruptions, uint64_t seed, int num_
       std::ostringstream message;
       message << measurement->source << ": " << kind->name << ":" << strength
               << " leaves no sample; give a weaker one";
-      throw Error(message.str());
+      throw Error(ErrorKind::kData, message.str())
+          .At(measurement->source)
+          .About(kind->name, strength);
     }
     measurement->look_up = nullptr;
     measurement->formula = nullptr;

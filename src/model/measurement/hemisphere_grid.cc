@@ -47,9 +47,11 @@ HemisphereGrid ParseHemisphereGrid(std::string_view text) {
   constexpr int64_t kMostPairs = 10'000'000;
   const int64_t nodes = int64_t{grid.thetas} * grid.phis;
   if (grid.thetas < 1 || grid.phis < 1 || nodes > 100'000 || nodes * nodes > kMostPairs) {
-    throw Error("'" + std::string(text) +
-                "' is no grid of directions; give the numbers of theta and phi, as 6x48, of at "
-                "most 3162 directions");
+    throw Error(ErrorKind::kFormat,
+                "'" + std::string(text) +
+                    "' is no grid of directions; give the numbers of theta and phi, as 6x48, of at "
+                    "most 3162 directions")
+        .About("grid of directions", text);
   }
   return grid;
 }
@@ -66,22 +68,24 @@ NodeTable ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& grid
   for (int j = 0; j < scattered.samples.size(); ++j) {
     const SphericalAngles& at = scattered.samples.directions[j];
     const auto i = grid.Find(at.theta_i, at.phi_i), o = grid.Find(at.theta_o, at.phi_o);
-    const auto fail = [&](const std::string& problem) {
+    const auto fail = [&](ErrorKind kind, const std::string& problem) {
       std::ostringstream message;
       message << scattered.source
               << ": the sample at theta_i, phi_i, theta_o, phi_o = " << RadiansToDegrees(at.theta_i)
               << ", " << RadiansToDegrees(at.phi_i) << ", " << RadiansToDegrees(at.theta_o) << ", "
               << RadiansToDegrees(at.phi_o) << " deg " << problem;
-      throw Error(message.str());
+      throw Error(kind, message.str()).At(scattered.source).About("sample", j);
     };
     if (!i || !o) {
       std::ostringstream steps;
       steps << "is at no node of the grid, whose steps are " << 90.0 / grid.thetas
             << " deg in theta and " << 360.0 / grid.phis << " deg in phi";
-      fail(steps.str());
+      fail(ErrorKind::kMismatch, steps.str());
     }
     const size_t index = *i * nodes + *o;
-    if (values.present[index]) fail("is there twice; the grid has room for one");
+    if (values.present[index]) {
+      fail(ErrorKind::kConflict, "is there twice; the grid has room for one");
+    }
     values.present[index] = true;
     values.rho[index] = scattered.samples.rho[j];
   }

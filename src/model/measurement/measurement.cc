@@ -114,10 +114,12 @@ void KeepAllBut(const std::vector<int>& left_out, int BinCounts::*reason,
 BrdfSamples SamplesOf(const Measurement& measurement) {
   if (measurement.table) return ValidSamples(*measurement.table);
   if (measurement.samples.size() == 0) {
-    throw Error(measurement.source + ": no valid sample of " +
-                std::to_string(measurement.counts.total) +
-                ": nowhere are both directions above the surface and all values finite and >= 0, "
-                "within --max_angle and --min_theta_d; trilobe info counts why");
+    throw ErrorIn(
+        ErrorKind::kData, measurement.source,
+        "no valid sample of " + std::to_string(measurement.counts.total) +
+            ": nowhere are both directions above the surface and all values finite and >= 0, "
+            "within --max_angle and --min_theta_d; trilobe info counts why")
+        .About("samples", 0);
   }
   BrdfSamples samples = measurement.samples;
   if (!measurement.anisotropic) EvenOutDensity(&samples);
@@ -126,8 +128,10 @@ BrdfSamples SamplesOf(const Measurement& measurement) {
 
 const BrdfTable& TableOf(const Measurement& measurement) {
   if (measurement.table) return *measurement.table;
-  throw Error(measurement.source + ": this command needs a table on the MERL grid, and this is a " +
-              measurement.kind + "; take a MERL or RGL file, or synth:NAME");
+  throw ErrorIn(ErrorKind::kUnsupported, measurement.source,
+                "this command needs a table on the MERL grid, and this is a " + measurement.kind +
+                    "; take a MERL or RGL file, or synth:NAME")
+      .About("table");
 }
 
 BrdfTable TableOf(Measurement&& measurement) {
@@ -149,10 +153,11 @@ void CheckDirections(const Measurement& scattered) {
       samples.angles.size() == samples.rho.size()) {
     return;
   }
-  throw Error(scattered.source + ": " + std::to_string(samples.size()) +
-              " scattered samples have " + std::to_string(samples.directions.size()) +
-              " pairs of directions and " + std::to_string(samples.angles.size()) +
-              " angles; each needs one");
+  throw ErrorIn(ErrorKind::kMismatch, scattered.source,
+                std::to_string(samples.size()) + " scattered samples have " +
+                    std::to_string(samples.directions.size()) + " pairs of directions and " +
+                    std::to_string(samples.angles.size()) + " angles; each needs one")
+      .About("directions", samples.directions.size());
 }
 
 void LimitAngles(double max_theta, Measurement* measurement) {
@@ -160,7 +165,10 @@ void LimitAngles(double max_theta, Measurement* measurement) {
     LimitAngles(max_theta, Unmeasured::kBeyondMaxAngle, &*measurement->table);
     return;
   }
-  if (!(max_theta >= 0)) throw Error("the largest angle must be a number of 0 or more");
+  if (!(max_theta >= 0)) {
+    throw Error(ErrorKind::kRange, "the largest angle must be a number of 0 or more")
+        .About("max_theta", max_theta);
+  }
   CheckDirections(*measurement);
   const double largest = std::min(max_theta, measurement->max_theta);
   std::vector<int> kept;
@@ -180,7 +188,10 @@ void LimitThetaD(double min_theta_d, Measurement* measurement) {
     LimitThetaD(min_theta_d, &*measurement->table);
     return;
   }
-  if (std::isnan(min_theta_d)) throw Error("the smallest theta_d must be a number");
+  if (std::isnan(min_theta_d)) {
+    throw Error(ErrorKind::kRange, "the smallest theta_d must be a number")
+        .About("min_theta_d", min_theta_d);
+  }
   CheckDirections(*measurement);
   std::vector<int> kept;
   for (int j = 0; j < measurement->samples.size(); ++j) {
@@ -281,8 +292,9 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
   NotNull(measurement, "the measurement");
   if (share == 0) return;
   if (!(share > 0 && share < 1)) {
-    throw Error("the share of missing directions is " + std::to_string(share) +
-                "; it must be from 0 up to 1");
+    throw Error(ErrorKind::kRange, "the share of missing directions is " + std::to_string(share) +
+                                       "; it must be from 0 up to 1")
+        .About("missing", share);
   }
   // Different from the random numbers of noise with the same seed.
   const auto is_lost = [&](uint64_t k) { return UniformAt(~seed, k) < share; };
@@ -393,7 +405,9 @@ void SampleCollector::KeepSpectrum(std::span<const double> wavelengths,
 }
 
 void SampleCollector::LeaveOut(int BinCounts::*reason) {
-  if (reason == nullptr) throw Error("a sample is left out for a reason, not null");
+  if (reason == nullptr) {
+    throw Error(ErrorKind::kMissing, "a sample is left out for a reason, not null").About("reason");
+  }
   ++measurement_.counts.total;
   ++(measurement_.counts.*reason);
 }

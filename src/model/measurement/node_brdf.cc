@@ -15,7 +15,9 @@ namespace {
 constexpr double kRadianRounding = 1e-9;  // [rad], of degrees that became radians
 
 Between BetweenThetas(const HemisphereGrid& grid, double theta) {
-  if (std::isnan(theta)) throw Error("a direction or an angle is not a number");
+  if (std::isnan(theta)) {
+    throw Error(ErrorKind::kRange, "a direction or an angle is not a number").About("theta", theta);
+  }
   const double place =
       std::clamp(theta / grid.ThetaStep(), 0.0, static_cast<double>(grid.thetas - 1));
   const int a = static_cast<int>(place);
@@ -82,9 +84,11 @@ void CheckHemisphereGrid(const HemisphereGrid& grid) {
   constexpr double kMostPairs = 1e7;
   const double nodes = 1.0 * grid.thetas * grid.phis;
   if (grid.thetas >= 1 && grid.phis >= 1 && nodes * nodes <= kMostPairs) return;
-  throw Error("a grid of " + std::to_string(grid.thetas) + " theta by " +
-              std::to_string(grid.phis) +
-              " phi; it needs at least one of each, and at most 3162 directions");
+  throw Error(ErrorKind::kRange,
+              "a grid of " + std::to_string(grid.thetas) + " theta by " +
+                  std::to_string(grid.phis) +
+                  " phi; it needs at least one of each, and at most 3162 directions")
+      .About("grid of directions");
 }
 
 std::optional<int> HemisphereGrid::Find(double theta, double phi) const {
@@ -104,11 +108,13 @@ NodeBrdf::NodeBrdf(NodeTable table) : table_(std::move(table)) {
   CheckHemisphereGrid(table_.grid);
   const auto nodes = static_cast<size_t>(table_.grid.nodes());
   if (table_.rho.size() != nodes * nodes || table_.present.size() != nodes * nodes) {
-    throw Error(table_.source + ": a table of nodes needs a value for each pair of its " +
-                std::to_string(nodes) + " nodes");
+    throw ErrorIn(
+        ErrorKind::kMismatch, table_.source,
+        "a table of nodes needs a value for each pair of its " + std::to_string(nodes) + " nodes")
+        .About("rho", table_.rho.size());
   }
   if (std::ranges::none_of(table_.present, [](bool present) { return present; })) {
-    throw Error(table_.source + ": no pair of nodes has a value");
+    throw ErrorIn(ErrorKind::kData, table_.source, "no pair of nodes has a value").About("present");
   }
   filled_ = Filled(table_);
 }

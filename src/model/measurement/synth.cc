@@ -156,11 +156,16 @@ double LossProbability(double min_cosine) {
 
 void CheckNoise(double noise) {
   if (noise >= 0 && noise <= 1) return;
-  throw Error("noise is " + std::to_string(noise) + "; it must be from 0 to 1");
+  throw Error(ErrorKind::kRange, "noise is " + std::to_string(noise) + "; it must be from 0 to 1")
+      .About("noise", noise);
 }
 
 void CheckBrdf(const SynthMaterial& material) {
-  if (!material.brdf) throw Error("synth:" + material.name + " has no BRDF");
+  if (!material.brdf) {
+    throw Error(ErrorKind::kMissing, "synth:" + material.name + " has no BRDF")
+        .At("synth:" + material.name)
+        .About("brdf");
+  }
 }
 
 // Simulated measurement of direction pair `index`; nothing if it is lost.
@@ -210,8 +215,11 @@ BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
   CheckNoise(noise);
   CheckBrdf(material);
   if (material.anisotropic) {
-    throw Error("synth:" + material.name +
-                " is anisotropic, which a MERL table cannot hold; use it as scattered samples");
+    throw Error(ErrorKind::kUnsupported,
+                "synth:" + material.name +
+                    " is anisotropic, which a MERL table cannot hold; use it as scattered samples")
+        .At("synth:" + material.name)
+        .About("anisotropic");
   }
   BrdfTable table = MakeInvalidTable("synth:" + material.name, grid);
   const GridCosines cosines_at(grid);

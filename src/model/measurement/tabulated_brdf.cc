@@ -56,7 +56,9 @@ TabulatedBrdf::TabulatedBrdf(const BrdfTable& table, int num_threads) : grid_(ta
   const MerlGrid& grid = grid_;
   const std::vector<bool> valid = ValidBins(table);
   if (std::ranges::find(valid, true) == valid.end()) {
-    throw Error(table.source + ": no valid bin; check that the file is a BRDF in MERL layout");
+    throw ErrorIn(ErrorKind::kData, table.source,
+                  "no valid bin; check that the file is a BRDF in MERL layout")
+        .About("bins");
   }
   std::vector<int> nearest(grid.size(), kNone);
   const int row = grid.theta_d * grid.phi_d;

@@ -246,8 +246,9 @@ bool IsNearlyDiffuse(const FactorModel& model, int lobe) {
 
 double LobeLight::Share(int lobe) const {
   if (lobe < 0 || lobe >= static_cast<int>(lobes.size())) {
-    throw Error("there is no lobe " + std::to_string(lobe) + " among " +
-                std::to_string(lobes.size()));
+    throw Error(ErrorKind::kRange, "there is no lobe " + std::to_string(lobe) + " among " +
+                                       std::to_string(lobes.size()))
+        .About("lobe", lobe);
   }
   const double total = Total(*this);
   return total > 0 ? Mean(lobes[lobe]) / total : 0;

@@ -116,7 +116,9 @@ bool HaveComparableLobes(const ModelSpec& a, const ModelSpec& b) {
 
 LobeMatch MatchLobes(const ModelFile& reference, const ModelFile& model) {
   if (!HaveComparableLobes(reference.model.spec(), model.model.spec())) {
-    throw Error("lobes can be matched only of models of the same sharing and axes");
+    throw Error(ErrorKind::kMismatch,
+                "lobes can be matched only of models of the same sharing and axes")
+        .About("spec");
   }
   const std::vector<Rgb> reference_light = LightOf(reference), light = LightOf(model);
   const auto rows = reference_light.size(), columns = light.size();

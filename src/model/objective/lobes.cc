@@ -14,8 +14,9 @@ namespace {
 
 void CheckLobe(const FactorModel& model, int lobe) {
   if (lobe >= 0 && lobe < model.spec().lobes) return;
-  throw Error("there is no lobe " + std::to_string(lobe) + ": the model has " +
-              std::to_string(model.spec().lobes));
+  throw Error(ErrorKind::kRange, "there is no lobe " + std::to_string(lobe) + ": the model has " +
+                                     std::to_string(model.spec().lobes))
+      .About("lobe", lobe);
 }
 
 // Sum of s in the channels of a table.
@@ -98,7 +99,9 @@ FactorModel WithoutLobe(const FactorModel& model, int lobe) {
 FactorModel WithLobesMerged(const FactorModel& model, int lobe, int other) {
   CheckLobe(model, lobe);
   CheckLobe(model, other);
-  if (lobe == other) throw Error("a lobe cannot be merged with itself");
+  if (lobe == other) {
+    throw Error(ErrorKind::kConflict, "a lobe cannot be merged with itself").About("lobe", lobe);
+  }
   const ModelSpec& spec = model.spec();
   FactorModel merged = model;
   for (const Factor factor : kFactors) {
@@ -118,7 +121,9 @@ FactorModel WithLobesMerged(const FactorModel& model, int lobe, int other) {
 }
 
 FactorModel SplitLobe(const FactorModel& model, int lobe) {
-  if (!model.spec().D.per_lobe) throw Error("lobes that share D cannot be split");
+  if (!model.spec().D.per_lobe) {
+    throw Error(ErrorKind::kUnsupported, "lobes that share D cannot be split").About("lobe", lobe);
+  }
   const int added = model.spec().lobes;
   std::vector<int> lobes(added);
   std::iota(lobes.begin(), lobes.end(), 0);
@@ -161,7 +166,10 @@ FactorModel WithAxes(const FactorModel& model, const ModelSpec& spec) {
   same.d_axis = spec.d_axis;
   same.f_axis = spec.f_axis;
   same.g_axis = spec.g_axis;
-  if (!(same == spec)) throw Error("new axes are for a model with the same lobes and sharing");
+  if (!(same == spec)) {
+    throw Error(ErrorKind::kMismatch, "new axes are for a model with the same lobes and sharing")
+        .About("spec");
+  }
   FactorModel result(spec);
   std::ranges::copy(model.d(), result.d().begin());
   for (int m = 0; m < spec.lobes; ++m) std::ranges::copy(model.s(m), result.s(m).begin());

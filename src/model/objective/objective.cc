@@ -17,7 +17,6 @@
 #include "model/objective/stencils_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/model/objective/reconstruct.h"
 
 namespace trilobe {
 namespace {
@@ -38,7 +37,9 @@ void CheckReadable(const ModelSpec& spec, const BrdfSamples& samples) {
   if (samples.on_grid()) {
     CheckIsotropic(spec, "a measurement on a MERL grid, which knows no azimuths,");
   } else if (spec.anisotropic() && samples.directions.empty()) {
-    throw Error(samples.source + ": the samples' azimuths are not known; fit an isotropic model");
+    throw ErrorIn(ErrorKind::kMissing, samples.source,
+                  "the samples' azimuths are not known; fit an isotropic model")
+        .About("directions");
   }
 }
 
@@ -56,17 +57,22 @@ void CheckRange(const BrdfSamples& samples) {
   std::ostringstream message;
   const auto at = std::ranges::find_if(
       samples.rho, [&](const Rgb& rho) { return std::ranges::max(rho) == largest; });
-  message << samples.source << ": sample " << at - samples.rho.begin() << ", the largest, is "
-          << largest << "/sr; that must be from " << kMinBrdf << " to " << kMaxBrdf
+  const std::string number = std::to_string(at - samples.rho.begin());
+  message << samples.source << ": sample " << number << ", the largest, is " << largest
+          << "/sr; that must be from " << kMinBrdf << " to " << kMaxBrdf
           << ": check the file, or multiply all values by 2^" << -std::ilogb(largest);
-  throw Error(message.str());
+  throw Error(ErrorKind::kRange, message.str())
+      .At(samples.source)
+      .About("sample " + number, largest);
 }
 
 // Checks that weights are >= 0 and keep E in range.
 void CheckWeights(const std::string& weighting, bool nonnegative, double energy) {
   constexpr double kMinEnergy = 1e-200, kMaxEnergy = 1e200;
   if (!nonnegative) {
-    throw Error("weighting '" + weighting + "' gives a weight that is negative or no number");
+    throw Error(ErrorKind::kRange,
+                "weighting '" + weighting + "' gives a weight that is negative or no number")
+        .About("weighting", weighting);
   }
   if (energy == 0 || (energy >= kMinEnergy && energy <= kMaxEnergy)) return;
   std::ostringstream message;
@@ -74,15 +80,18 @@ void CheckWeights(const std::string& weighting, bool nonnegative, double energy)
           << "' and the samples' multiplicities make a black model's E " << energy
           << ", out of the range from " << kMinEnergy << " to " << kMaxEnergy
           << "; multiply them by another factor";
-  throw Error(message.str());
+  throw Error(ErrorKind::kRange, message.str()).About("weighting", weighting);
 }
 
 const BrdfSamples& Checked(const BrdfSamples& samples, const ModelSpec& spec, int num_threads) {
   if (num_threads < 1) {
-    throw Error("num_threads is " + std::to_string(num_threads) + "; give 1 or more");
+    throw Error(ErrorKind::kRange,
+                "num_threads is " + std::to_string(num_threads) + "; give 1 or more")
+        .About("num_threads", num_threads);
   }
   if (samples.size() == 0) {
-    throw Error(samples.source + ": no sample; an objective needs one or more");
+    throw ErrorIn(ErrorKind::kData, samples.source, "no sample; an objective needs one or more")
+        .About("samples", 0);
   }
   CheckReadable(spec, samples);
   CheckSamples(samples);
@@ -337,7 +346,9 @@ Objective::Objective(const Objective& other, const ModelSpec& spec)
 Objective::Objective(Objective objective, BrdfSamples added, double weight)
     : spec_(objective.spec()), num_threads_(objective.num_threads()) {
   if (objective.prepared_->own->on_grid()) {
-    throw Error(objective.prepared_->own->source + ": samples are added to scattered ones alone");
+    throw ErrorIn(ErrorKind::kUnsupported, objective.prepared_->own->source,
+                  "samples are added to scattered ones alone")
+        .About("grid");
   }
   added.multiplicity.assign(added.rho.size(), weight);
   std::shared_ptr<const Prepared> shared = objective.prepared_;
@@ -421,7 +432,10 @@ double Objective::Value(const FactorModel& model) const {
 }
 
 const SplineCells& Objective::spline_cells() const {
-  if (folded() == nullptr) throw Error(samples().source + ": the samples are on no grid");
+  if (folded() == nullptr) {
+    throw ErrorIn(ErrorKind::kUnsupported, samples().source, "the samples are on no grid")
+        .About("grid");
+  }
   std::call_once(prepared_->spline_cells_once,
                  [this] { prepared_->spline_cells = std::make_unique<SplineCells>(*folded()); });
   return *prepared_->spline_cells;
@@ -429,37 +443,16 @@ const SplineCells& Objective::spline_cells() const {
 
 WeightedSample Objective::Sample(int j) const {
   if (j < 0 || j >= num_samples()) {
-    throw Error(prepared_->own->source + ": there is no sample " + std::to_string(j) + " among " +
-                std::to_string(num_samples()));
+    throw ErrorIn(
+        ErrorKind::kRange, prepared_->own->source,
+        "there is no sample " + std::to_string(j) + " among " + std::to_string(num_samples()))
+        .About("sample", j);
   }
   return prepared_->Sample(j);
 }
 
 const std::vector<WeightedSample>& Objective::weighted_samples() const {
   return prepared_->WeightedSamples(num_threads_);
-}
-
-BrdfSamples Reweighted(const Objective& objective, const FactorModel& model, double delta) {
-  CheckSameSpec(objective.spec(), model.spec());
-  if (!(delta > 0)) throw Error("the error from which a loss is linear must be above 0");
-  BrdfSamples samples = objective.samples();
-  const std::vector<Rgb> fitted = UnclampedSamples(model, samples, objective.num_threads());
-  const double level = objective.weighting().level;
-  const double unit = level > 0 ? level : 1;
-  samples.multiplicity.resize(samples.rho.size());
-  for (int j = 0; j < samples.size(); ++j) {
-    // In units of the level if the weighting uses it. Without the solid angle, which is a number of
-    // samples and not an error.
-    const Rgb w = objective.weighting()({samples.rho[j], samples.CosinesOf(j)});
-    double square = 0;
-    for (int c = 0; c < kChannels; ++c) {
-      const double difference = fitted[j][c] - samples.rho[j][c];
-      square += w[c] * difference * difference / kChannels;
-    }
-    samples.multiplicity[j] =
-        objective.samples().Multiplicity(j) * std::min(1.0, delta * unit / std::sqrt(square));
-  }
-  return samples;
 }
 
 }  // namespace trilobe

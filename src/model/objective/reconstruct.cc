@@ -33,7 +33,9 @@ std::vector<Rgb> UnclampedSamples(const FactorModel& model, const BrdfSamples& s
   const ModelSpec& spec = model.spec();
   if (spec.anisotropic()) {
     if (samples.directions.empty()) {
-      throw Error(samples.source + ": an anisotropic model needs the samples' azimuths");
+      throw ErrorIn(ErrorKind::kMissing, samples.source,
+                    "an anisotropic model needs the samples' azimuths")
+          .About("directions");
     }
     return ForEach(samples.size(), num_threads, [&](int j) {
       const SampleStencils at = ScatteredStencils(spec, samples.directions[j]);
@@ -82,8 +84,10 @@ BrdfTable Reconstruct(const FactorModel& model, const std::string& source, const
       for (int c = 0; c < kChannels; ++c) {
         table.SetValue(c, samples.bins[j], rho[j][c]);
         if (!std::isfinite(table.stored[c][samples.bins[j]])) {
-          throw Error(source + ": the model's value overflows at bin " +
-                      std::to_string(samples.bins[j]) + "; its factors are too large");
+          throw ErrorIn(ErrorKind::kData, source,
+                        "the model's value overflows at bin " + std::to_string(samples.bins[j]) +
+                            "; its factors are too large")
+              .About("model", "overflow");
         }
       }
     }

@@ -112,8 +112,10 @@ double MeanLogError(const BrdfSamples& samples, const FactorModel& model, int nu
 ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted) {
   const BrdfSamples& samples = objective.samples();
   if (fitted.size() != samples.rho.size()) {
-    throw Error(samples.source + ": " + std::to_string(fitted.size()) + " values for " +
-                std::to_string(samples.size()) + " samples; each needs one");
+    throw ErrorIn(ErrorKind::kMismatch, samples.source,
+                  std::to_string(fitted.size()) + " values for " + std::to_string(samples.size()) +
+                      " samples; each needs one")
+        .About("values", fitted.size());
   }
   ScoreReport report;
   report.valid_samples = samples.size();
@@ -151,7 +153,9 @@ ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitt
   for (const double x : {report.objective, report.relative_objective, report.rmse,
                          report.mean_relative_error, report.mean_log_error}) {
     if (!std::isfinite(x)) {
-      throw Error(samples.source + ": the model's errors overflow; its factors are too large");
+      throw ErrorIn(ErrorKind::kData, samples.source,
+                    "the model's errors overflow; its factors are too large")
+          .About("model", "overflow");
     }
   }
   return report;

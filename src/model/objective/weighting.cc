@@ -87,10 +87,13 @@ Weighting PowerWeighting(std::string name, std::string description, const Power&
           .needs_level = power.relative};
 }
 
-[[noreturn]] void FailPower(const std::string& name, const std::string& problem) {
-  throw Error("weighting '" + name + "': " + problem +
-              "; write power:exponent=1,epsilon=0.001,relative=0,by_channel=0,both_cosines=0,"
-              "solid_angle=0, or less of it");
+[[noreturn]] void FailPower(const std::string& name, const std::string& problem, ErrorKind kind,
+                            std::string_view key) {
+  throw Error(kind,
+              "weighting '" + name + "': " + problem +
+                  "; write power:exponent=1,epsilon=0.001,relative=0,by_channel=0,both_cosines=0,"
+                  "solid_angle=0, or less of it")
+      .About(key, name);
 }
 
 // "power:KEY=VALUE,...".
@@ -103,10 +106,13 @@ Weighting ParsePower(const std::string& name) {
     double value = -1;
     std::getline(text, key, '=');
     if (!(text >> value && text.peek() == EOF && value >= 0 && value <= 10)) {
-      FailPower(name, "'" + item + "' is not KEY=NUMBER with a number from 0 to 10");
+      FailPower(name, "'" + item + "' is not KEY=NUMBER with a number from 0 to 10",
+                ErrorKind::kFormat, item);
     }
     const auto yes = [&] {
-      if (value != 0 && value != 1) FailPower(name, "'" + item + "' is neither 0 nor 1");
+      if (value != 0 && value != 1) {
+        FailPower(name, "'" + item + "' is neither 0 nor 1", ErrorKind::kRange, key);
+      }
       return value == 1;
     };
     if (key == "exponent") {
@@ -116,19 +122,22 @@ Weighting ParsePower(const std::string& name) {
     } else if (key == "relative") {
       power.relative = yes();
     } else if (key == "by_channel") {
-      if (value > 1) FailPower(name, "by_channel must be at most 1");
+      if (value > 1) FailPower(name, "by_channel must be at most 1", ErrorKind::kRange, key);
       power.by_channel = value;
     } else if (key == "both_cosines") {
       power.both_cosines = yes();
     } else if (key == "solid_angle") {
       power.solid_angle = value;
     } else {
-      FailPower(name, "unknown key '" + key + "'");
+      FailPower(name, "unknown key '" + key + "'", ErrorKind::kUnknown, key);
     }
   }
-  if (power.exponent > 2) FailPower(name, "exponent must be at most 2");
+  if (power.exponent > 2) {
+    FailPower(name, "exponent must be at most 2", ErrorKind::kRange, "exponent");
+  }
   if (!(power.epsilon >= 1e-9) && power.exponent > 0) {
-    FailPower(name, "epsilon must be at least 1e-9, or weights of black samples are infinite");
+    FailPower(name, "epsilon must be at least 1e-9, or weights of black samples are infinite",
+              ErrorKind::kRange, "epsilon");
   }
   return PowerWeighting(name, "as written", power);
 }
@@ -184,7 +193,10 @@ Weighting FindWeighting(std::string_view name) {
 }
 
 Weighting ForSamples(Weighting weighting, const BrdfSamples& samples, int num_threads) {
-  if (!weighting.formula) throw Error("weighting '" + weighting.name + "' has no formula");
+  if (!weighting.formula) {
+    throw Error(ErrorKind::kMissing, "weighting '" + weighting.name + "' has no formula")
+        .About("weighting", weighting.name);
+  }
   if (weighting.needs_level && !(weighting.level > 0)) {
     weighting.level = MeanReflectance(samples, num_threads);
   }

@@ -140,10 +140,11 @@ class AwlsGss : public Solver {
                         FactorModel* model) const override {
     Run run("awls_gss", objective, options, model);
     if (objective.folded() == nullptr) {
-      throw Error(
-          objective.samples().source +
-          ": solver awls_gss needs samples on a MERL grid whose bins the model's tables have, and "
-          "highlights without a stretch; use --solver=awls");
+      throw ErrorIn(ErrorKind::kUnsupported, objective.samples().source,
+                    "solver awls_gss needs samples on a MERL grid "
+                    "whose bins the model's tables have, and "
+                    "highlights without a stretch; use --solver=awls")
+          .About("solver", "awls_gss");
     }
     CellSums cells(*objective.folded(), objective.spec());
     const LinearShadowing shadowing(*objective.folded());

@@ -105,9 +105,11 @@ ceres::Solver::Options CeresOptions(const SolverOptions& options, LinearSolver l
   ceres_options.logging_type = ceres::SILENT;
   std::string reason;
   if (!ceres_options.IsValid(&reason)) {
-    throw Error("Ceres does not take linear_solver " +
-                std::string(LinearSolverName(linear_solver)) + " with trust_region " +
-                TrustRegionName(options.trust_region) + ": " + reason);
+    throw Error(ErrorKind::kConflict, "Ceres does not take linear_solver " +
+                                          std::string(LinearSolverName(linear_solver)) +
+                                          " with trust_region " +
+                                          TrustRegionName(options.trust_region) + ": " + reason)
+        .About("linear_solver", LinearSolverName(linear_solver));
   }
   return ceres_options;
 }

@@ -43,12 +43,16 @@ std::vector<SolverEntry>& MutableSolvers() {
 const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
 
 void RegisterSolver(SolverEntry entry) {
-  if (entry.name.empty()) throw Error("a solver needs a name");
-  if (!entry.make) throw Error("solver '" + entry.name + "' has no function that makes it");
+  if (entry.name.empty()) throw Error(ErrorKind::kMissing, "a solver needs a name").About("name");
+  if (!entry.make) {
+    throw Error(ErrorKind::kMissing, "solver '" + entry.name + "' has no function that makes it")
+        .About("make", entry.name);
+  }
   for (const std::string& option : entry.options) FindSolverOption(option);
   for (const SolverEntry& known : Solvers()) {
     if (known.name == entry.name) {
-      throw Error("there is a solver named '" + entry.name + "' already");
+      throw Error(ErrorKind::kConflict, "there is a solver named '" + entry.name + "' already")
+          .About("solver", entry.name);
     }
   }
   MutableSolvers().push_back(std::move(entry));
@@ -61,7 +65,10 @@ const SolverEntry& FindSolver(std::string_view name) {
 std::unique_ptr<Solver> MakeSolver(std::string_view name) {
   const SolverEntry& entry = FindSolver(name);
   std::unique_ptr<Solver> solver = entry.make();
-  if (solver == nullptr) throw Error("solver '" + std::string(name) + "' was not made");
+  if (solver == nullptr) {
+    throw Error(ErrorKind::kMissing, "solver '" + std::string(name) + "' was not made")
+        .About("solver", name);
+  }
   solver->own_options_ = entry.options;
   return solver;
 }

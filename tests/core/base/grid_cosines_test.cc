@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -20,7 +21,8 @@ TEST(GridCosines, AreThoseOfTheCentersToTheBit) {
 }
 
 TEST(GridCosines, AreNotOfAGridThatIsNone) {
-  EXPECT_THROW(GridCosines(MerlGrid{.theta_h = 0}), Error);
+  EXPECT_THAT(ErrorOf([&] { GridCosines(MerlGrid{.theta_h = 0}); }),
+              IsError(ErrorKind::kRange, {.key = "grid of bins"}));
 }
 
 }  // namespace

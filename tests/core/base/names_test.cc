@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tests/error_of.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -16,13 +19,8 @@ struct Choice {
 
 const std::vector<Choice> kChoices = {{"first", 1}, {"second", 2}};
 
-std::string ErrorFor(std::string_view name, const std::vector<Choice>& choices) {
-  try {
-    FindNamed("choice", name, choices);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "found";
+std::optional<Error> ErrorFor(std::string_view name, const std::vector<Choice>& choices) {
+  return ErrorOf([&] { FindNamed("choice", name, choices); });
 }
 
 TEST(FindNamed, FindsByTheWholeName) {
@@ -31,10 +29,13 @@ TEST(FindNamed, FindsByTheWholeName) {
 }
 
 TEST(FindNamed, ListsTheKnownNamesOtherwise) {
-  EXPECT_EQ(ErrorFor("third", kChoices), "unknown choice 'third'; known: first, second");
-  EXPECT_EQ(ErrorFor("", kChoices), "unknown choice ''; known: first, second");
-  EXPECT_EQ(ErrorFor("firs", kChoices), "unknown choice 'firs'; known: first, second");
-  EXPECT_EQ(ErrorFor("First", kChoices), "unknown choice 'First'; known: first, second");
+  EXPECT_THAT(ErrorFor("third", kChoices),
+              IsError(ErrorKind::kUnknown, {.key = "choice", .value = "third"}));
+  EXPECT_THAT(ErrorFor("", kChoices), IsError(ErrorKind::kUnknown, {.key = "choice"}));
+  EXPECT_THAT(ErrorFor("firs", kChoices),
+              IsError(ErrorKind::kUnknown, {.key = "choice", .value = "firs"}));
+  EXPECT_THAT(ErrorFor("First", kChoices),
+              IsError(ErrorKind::kUnknown, {.key = "choice", .value = "First"}));
 }
 
 TEST(NearestName, TakesTheFewestEdits) {

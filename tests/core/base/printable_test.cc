@@ -25,7 +25,7 @@ TEST(Printable, ShowsBytesOfAllElse) {
 }
 
 TEST(Printable, IsWhatEveryErrorIs) {
-  EXPECT_STREQ(Error("cannot read 'a\nb'").what(), R"(cannot read 'a\nb')");
+  EXPECT_STREQ(Error(ErrorKind::kFile, "cannot read 'a\nb'").what(), R"(cannot read 'a\nb')");
   EXPECT_EQ(MessageOf(std::runtime_error("a\nb")), R"(internal error: a\nb)");
 }
 

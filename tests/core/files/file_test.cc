@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 #include "trilobe/core/base/error.h"
 
@@ -27,7 +28,6 @@ namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 void WriteText(const std::string& path, const std::string& text) {
@@ -55,20 +55,30 @@ TEST(ReadFile, GivesAllBytes) {
 TEST(ReadFile, RefusesWhatIsNoFile) {
   const TestDirectory directory;
   EXPECT_THAT(ErrorOf([&] { ReadFile(directory.Path("missing")); }),
-              AllOf(HasSubstr(directory.Path("missing")), HasSubstr("No such file")));
-  EXPECT_THAT(ErrorOf([&] { ReadFile(directory.path()); }), HasSubstr("is a directory"));
-  EXPECT_THAT(ErrorOf([] { ReadFile("/dev/zero"); }), HasSubstr("not a regular file"));
-  EXPECT_THAT(ErrorOf([] { ReadFile(""); }), HasSubstr("No such file"));
+              IsError(ErrorKind::kFile, {.file = directory.Path("missing"),
+                                         .key = "read",
+                                         .value = "No such file or directory"}));
+  EXPECT_THAT(
+      ErrorOf([&] { ReadFile(directory.path()); }),
+      IsError(ErrorKind::kFile, {.file = directory.path(), .key = "read", .value = "directory"}));
+  EXPECT_THAT(ErrorOf([] { ReadFile("/dev/zero"); }),
+              IsError(ErrorKind::kFile, {.key = "read", .value = "not a regular file"}));
+  EXPECT_THAT(ErrorOf([] { ReadFile(""); }),
+              IsError(ErrorKind::kFile, {.key = "read", .value = "No such file or directory"}));
   // A pipe that nobody writes to must not make it wait.
   ASSERT_EQ(mkfifo(directory.Path("pipe").c_str(), 0600), 0);
-  EXPECT_THAT(ErrorOf([&] { ReadFile(directory.Path("pipe")); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(
+      ErrorOf([&] { ReadFile(directory.Path("pipe")); }),
+      IsError(ErrorKind::kFile,
+              {.file = directory.Path("pipe"), .key = "read", .value = "not a regular file"}));
 }
 
 TEST(ReadFile, RefusesAHugeFileBeforeReadingIt) {
   const TestDirectory directory;
   const std::string path = directory.Make("huge", "");
   std::filesystem::resize_file(path, uintmax_t{1} << 40);  // sparse
-  EXPECT_THAT(ErrorOf([&] { ReadFile(path); }), HasSubstr("1099511627776 bytes"));
+  EXPECT_THAT(ErrorOf([&] { ReadFile(path); }),
+              IsError(ErrorKind::kFile, {.file = path, .key = "read", .value = "size"}));
 }
 
 TEST(ReadFile, ReportsAnUnreadableFile) {
@@ -78,8 +88,7 @@ TEST(ReadFile, ReportsAnUnreadableFile) {
   EXPECT_EXIT(ExitWith([&] {
                 // The superuser may read anything, so be somebody else.
                 if (geteuid() == 0 && setuid(65534) != 0) return false;
-                return ErrorOf([&] { ReadFile(path); }).find("Permission denied") !=
-                       std::string::npos;
+                return ErrorOf([&] { ReadFile(path); })->facts().value == "Permission denied";
               }),
               testing::ExitedWithCode(0), "");
 }
@@ -124,20 +133,23 @@ TEST(WriteFile, LeavesEverythingAsItWasWhenTheWriterFails) {
                std::out_of_range);
   EXPECT_THAT(
       ErrorOf([&] { WriteFile(path, [](std::ostream& out) { out.setstate(std::ios::failbit); }); }),
-      HasSubstr(path));
+      IsError(ErrorKind::kFile, {.file = path, .key = "write", .value = "content"}));
   EXPECT_EQ(TestDirectory::Content(path), "old");
   EXPECT_THAT(directory.Names(), ElementsAre("file"));
 }
 
 TEST(WriteFile, RefusesImpossibleTargets) {
   const TestDirectory directory;
-  EXPECT_THAT(ErrorOf([&] { WriteText(directory.path(), ""); }), HasSubstr("is a directory"));
+  EXPECT_THAT(
+      ErrorOf([&] { WriteText(directory.path(), ""); }),
+      IsError(ErrorKind::kFile, {.file = directory.path(), .key = "write", .value = "directory"}));
   EXPECT_THAT(ErrorOf([&] { WriteText(directory.Path("no/file"), ""); }),
-              AllOf(HasSubstr(directory.Path("no/file")),
-                    HasSubstr("there is no folder '" + directory.Path("no") + "'; make it first")));
-  EXPECT_THAT(ErrorOf([] { WriteText("", ""); }), HasSubstr("cannot write ''"));
+              IsError(ErrorKind::kFile, {.file = directory.Path("no/file"), .key = "write"}));
+  EXPECT_THAT(ErrorOf([] { WriteText("", ""); }),
+              IsError(ErrorKind::kFile, {.key = "write", .value = "No such file or directory"}));
   // Renaming over a device would replace it.
-  EXPECT_THAT(ErrorOf([] { WriteText("/dev/null", ""); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(ErrorOf([] { WriteText("/dev/null", ""); }),
+              IsError(ErrorKind::kFile, {.key = "write", .value = "not a regular file"}));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
   EXPECT_THAT(directory.Names(), IsEmpty());
 }
@@ -147,9 +159,8 @@ TEST(WriteFile, ReportsAnUnwritableDirectory) {
   ASSERT_EQ(chmod(directory.path().c_str(), 0555), 0);
   EXPECT_EXIT(ExitWith([&] {
                 if (geteuid() == 0 && setuid(65534) != 0) return false;
-                return ErrorOf([&] {
-                         WriteText(directory.Path("file"), "text");
-                       }).find("Permission denied") != std::string::npos;
+                return ErrorOf([&] { WriteText(directory.Path("file"), "text"); })->facts().value ==
+                       "Permission denied";
               }),
               testing::ExitedWithCode(0), "");
   ASSERT_EQ(chmod(directory.path().c_str(), 0755), 0);
@@ -164,9 +175,8 @@ TEST(CheckWritable, FindsOutThatFilesCouldNotBeOpened) {
   EXPECT_EXIT(ExitWith([&] {
                 if (geteuid() == 0 && setuid(65534) != 0) return false;
                 umask(0777);
-                return ErrorOf([&] {
-                         CheckWritable(directory.Path("file"));
-                       }).find("by its permissions; run `umask 022`") != std::string::npos;
+                return ErrorOf([&] { CheckWritable(directory.Path("file")); })->facts().value ==
+                       "permissions";
               }),
               testing::ExitedWithCode(0), "");
   EXPECT_THAT(directory.Names(), IsEmpty());
@@ -188,17 +198,16 @@ std::string FillTheDisk(const std::string& directory) {
 
 TEST(WriteFile, LeavesEverythingAsItWasOnAFullDisk) {
   const TestDirectory directory;
-  EXPECT_EXIT(
-      ExitWith([&] {
-        const std::string reason = FillTheDisk(directory.path());
-        const std::string path = directory.Make("file", "old");
-        const std::string message = ErrorOf([&] { WriteText(path, std::string(3 << 20, 'x')); });
-        std::cerr << "message: " << message << std::endl;
-        return message.find(reason) != std::string::npos &&
-               message.find(path) != std::string::npos && TestDirectory::Content(path) == "old" &&
-               directory.Names() == std::vector<std::string>{"file"};
-      }),
-      testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(ExitWith([&] {
+                const std::string reason = FillTheDisk(directory.path());
+                const std::string path = directory.Make("file", "old");
+                const auto error = ErrorOf([&] { WriteText(path, std::string(3 << 20, 'x')); });
+                std::cerr << "message: " << error->what() << std::endl;
+                return error->facts().value == reason && error->facts().file == path &&
+                       TestDirectory::Content(path) == "old" &&
+                       directory.Names() == std::vector<std::string>{"file"};
+              }),
+              testing::ExitedWithCode(0), "");
 }
 
 // A run that was killed while it wrote leaves a temporary file, whose lock nobody holds.
@@ -245,10 +254,12 @@ TEST(WriteFile, ShowsTheOldFileUntilTheNewOneIsWhole) {
         EXPECT_EQ(content, "new");
         EXPECT_EQ(TestDirectory::Content(path), "old");
       });
-  EXPECT_THROW(WriteFile(
-                   path, [](std::ostream& out) { out << "newer"; },
-                   [](std::string_view) { throw Error("no"); }),
-               Error);
+  EXPECT_THAT(ErrorOf([&] {
+                WriteFile(
+                    path, [](std::ostream& out) { out << "newer"; },
+                    [](std::string_view) { throw Error(ErrorKind::kData, "no"); });
+              }),
+              IsError(ErrorKind::kData));
   EXPECT_EQ(TestDirectory::Content(path), "new");
   EXPECT_THAT(directory.Names(), ElementsAre("file"));
 }
@@ -261,7 +272,7 @@ TEST(MakeNamelessFile, IsInNoFolder) {
   std::rewind(file.get());
   EXPECT_EQ(std::fgetc(file.get()), 't');
   EXPECT_THAT(ErrorOf([&] { MakeNamelessFile(directory.Path("none/a.png")); }),
-              HasSubstr("there is no folder '"));
+              IsError(ErrorKind::kFile, {.file = directory.Path("none/a.png"), .key = "write"}));
 }
 
 TEST(CheckWritable, FindsOutBeforeAndLeavesNothing) {
@@ -274,12 +285,19 @@ TEST(CheckWritable, FindsOutBeforeAndLeavesNothing) {
   EXPECT_EQ(TestDirectory::Content(file), "old");
   EXPECT_THAT(directory.Names(), ElementsAre("file"));
   std::filesystem::create_symlink("nothing", directory.Path("dangling"));
-  EXPECT_THAT(ErrorOf([&] { CheckWritable(directory.Path("dangling")); }),
-              HasSubstr("symbolic link to nothing"));
-  EXPECT_THAT(ErrorOf([&] { CheckWritable(directory.path()); }), HasSubstr("is a directory"));
+  EXPECT_THAT(
+      ErrorOf([&] { CheckWritable(directory.Path("dangling")); }),
+      IsError(ErrorKind::kFile,
+              {.file = directory.Path("dangling"), .key = "write", .value = "dangling link"}));
+  EXPECT_THAT(
+      ErrorOf([&] { CheckWritable(directory.path()); }),
+      IsError(ErrorKind::kFile, {.file = directory.path(), .key = "write", .value = "directory"}));
   EXPECT_THAT(ErrorOf([&] { CheckWritable(directory.Path("file/a")); }),
-              HasSubstr("/file' is not a directory"));
-  EXPECT_THAT(ErrorOf([] { CheckWritable("/proc/a/b"); }), HasSubstr("cannot write '/proc/a/b'"));
+              IsError(ErrorKind::kFile,
+                      {.file = directory.Path("file/a"), .key = "write", .value = "no directory"}));
+  EXPECT_THAT(ErrorOf([] { CheckWritable("/proc/a/b"); }),
+              IsError(ErrorKind::kFile,
+                      {.file = "/proc/a/b", .key = "write", .value = "No such file or directory"}));
 }
 
 TEST(CheckWritable, SeesAFullDisk) {
@@ -290,7 +308,7 @@ TEST(CheckWritable, SeesAFullDisk) {
                 const std::string path = directory.Path("file");
                 CheckWritable(path);
                 std::ofstream(directory.Path("other")) << std::string(1 << 20, 'x');
-                return ErrorOf([&] { CheckWritable(path); }).find(reason) != std::string::npos &&
+                return ErrorOf([&] { CheckWritable(path); })->facts().value == reason &&
                        directory.Names() == std::vector<std::string>{"other"};
               }),
               testing::ExitedWithCode(0), "");
@@ -309,10 +327,14 @@ TEST(MakeDirectories, RefusesAFileInTheWay) {
   const TestDirectory directory;
   directory.Make("file", "");
   EXPECT_THAT(ErrorOf([&] { MakeDirectories(directory.Path("file")); }),
-              HasSubstr("Not a directory"));
-  EXPECT_THAT(ErrorOf([&] { MakeDirectories(directory.Path("file/a")); }),
-              HasSubstr("Not a directory"));
-  EXPECT_THAT(ErrorOf([] { MakeDirectories(""); }), HasSubstr("cannot make the directory ''"));
+              IsError(ErrorKind::kFile,
+                      {.file = directory.Path("file"), .key = "make", .value = "Not a directory"}));
+  EXPECT_THAT(
+      ErrorOf([&] { MakeDirectories(directory.Path("file/a")); }),
+      IsError(ErrorKind::kFile,
+              {.file = directory.Path("file/a"), .key = "make", .value = "Not a directory"}));
+  EXPECT_THAT(ErrorOf([] { MakeDirectories(""); }),
+              IsError(ErrorKind::kFile, {.key = "make", .value = "Invalid argument"}));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/core/base/no_threads.h"
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -51,8 +52,12 @@ TEST(ParallelForShort, CallsEveryItemOnce) {
 
 TEST(ParallelFor, NeedsAThreadAndWork) {
   for (const auto& parallel : {ParallelFor, ParallelForShort, ParallelJobs}) {
-    for (const int threads : {-1, 0}) EXPECT_THROW(parallel(1, threads, [](int) {}), Error);
-    EXPECT_THROW(parallel(1, 1, nullptr), Error);
+    for (const int threads : {-1, 0}) {
+      EXPECT_THAT(ErrorOf([&] { parallel(1, threads, [](int) {}); }),
+                  IsError(ErrorKind::kRange, {.key = "num_threads"}));
+    }
+    EXPECT_THAT(ErrorOf([&] { parallel(1, 1, nullptr); }),
+                IsError(ErrorKind::kMissing, {.key = "work"}));
   }
 }
 

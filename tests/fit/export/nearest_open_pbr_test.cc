@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/error_of.h"
 #include "tests/model/materials.h"
 #include "trilobe/core/base/error.h"
 
@@ -46,7 +47,10 @@ TEST(FindNearestOpenPbr, TakesAnisotropicModels) {
 }
 
 TEST(FindNearestOpenPbr, RefusesABlackModel) {
-  EXPECT_THROW(FindNearestOpenPbr(Mat({0, 0, 0}), kPi / 2, kSmall), Error);
+  EXPECT_THAT(ErrorOf([&] {
+                FindNearestOpenPbr(Mat({0, 0, 0}), kPi / 2, kSmall);
+              }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "black"}));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/measurement/synth.h"
 #include "trilobe/model/objective/reconstruct.h"
@@ -81,7 +82,8 @@ TEST(HeldOut, IsAFifthOfThePairsEachWithItsTwin) {
 TEST(HeldOut, AsksForDirections) {
   BrdfSamples samples = Velvet(0);
   samples.directions.clear();
-  EXPECT_THROW(HeldOut(samples, 1), Error);
+  EXPECT_THAT(ErrorOf([&] { HeldOut(samples, 1); }),
+              IsError(ErrorKind::kMissing, {.key = "directions"}));
 }
 
 TEST(NodeLadder, ClimbsAsFarAsTheDataDo) {
@@ -144,9 +146,12 @@ TEST(ChooseNodes, StopsWithWhatItHas) {
 }
 
 TEST(ChooseNodes, AsksForALadderAndEnoughSamples) {
-  EXPECT_THROW(ChooseNodes(Objective(Velvet(0), Nested()[0].spec, Weightings().front()), {}, {}),
-               Error);
-  EXPECT_THROW(Choose(Selected(Velvet(0), {100}), Nested(), {}), Error);
+  EXPECT_THAT(ErrorOf([&] {
+                ChooseNodes(Objective(Velvet(0), Nested()[0].spec, Weightings().front()), {}, {});
+              }),
+              IsError(ErrorKind::kMissing, {.key = "nodes"}));
+  EXPECT_THAT(ErrorOf([&] { Choose(Selected(Velvet(0), {100}), Nested(), {}); }),
+              IsError(ErrorKind::kData, {.key = "directions", .value = "1"}));
 }
 
 }  // namespace

@@ -47,7 +47,10 @@ TEST(InterpolateResidual, OfHighlightsNarrowerThanTheStepsIsNot) {
 }
 
 TEST(InterpolateResidual, WantsSamplesAtItsNodes) {
-  EXPECT_THROW(ResidualBy([](const SphericalAngles&) { return 0; }, {5, 12}), Error);
+  EXPECT_THAT(ErrorOf([&] {
+                ResidualBy([](const SphericalAngles&) { return 0; }, {5, 12});
+              }),
+              IsError(ErrorKind::kMismatch, {.key = "grid"}));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/objective/lobes.h"
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/finish/reach.h"
 #include "trilobe/model/measurement/synth.h"
@@ -86,7 +87,8 @@ TEST(SyntheticPrior, AddsSamplesBetweenThoseOfTheData) {
     ASSERT_LE(both.directions[j].theta_o, DegreesToRadians(75) + 1e-9);
   }
   EXPECT_EQ(WithPrior(three, {.weight = 0.25}).rho, both.rho);
-  EXPECT_THROW(WithPrior(one, {.weight = 0}), Error);
+  EXPECT_THAT(ErrorOf([&] { WithPrior(one, {.weight = 0}); }),
+              IsError(ErrorKind::kRange, {.key = "weight", .value = "0"}));
 }
 
 // A solver lowers E of data and prior together, and tells E of the data alone, from the start on.
@@ -280,7 +282,8 @@ TEST(SyntheticPrior, NeedsDirections) {
   BrdfSamples samples = SteelAtNodes();
   samples.directions.clear();
   const Objective objective(samples, ModelSpec::SharedFactors(1), Weightings().front());
-  EXPECT_THROW(WithPrior(objective, {}), Error);
+  EXPECT_THAT(ErrorOf([&] { WithPrior(objective, {}); }),
+              IsError(ErrorKind::kMissing, {.key = "directions"}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/objective/gauge.h"
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -187,7 +188,8 @@ TEST(ModelChoice, TheJudgeDecides) {
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).chosen, 0);
   // A judge is required.
   options.judge = nullptr;
-  EXPECT_THROW(ChooseModel(fit.objective, fit.model, options), Error);
+  EXPECT_THAT(ErrorOf([&] { ChooseModel(fit.objective, fit.model, options); }),
+              IsError(ErrorKind::kMissing, {.key = "judge"}));
 }
 
 TEST(ModelChoice, FindsWhatTheDataDoNotShare) {
@@ -558,7 +560,9 @@ TEST(ModelChoice, ScatteredSamples) {
 TEST(ModelChoice, ABudgetBelowOneIsAnError) {
   const Fit fit(RandomTable(kGrid, 1), Spec(0), 1);
   for (const int parameters : {0, -1, std::numeric_limits<int>::min()}) {
-    EXPECT_THROW(fit.Choose(parameters), Error) << parameters;
+    EXPECT_THAT(ErrorOf([&] { fit.Choose(parameters); }),
+                IsError(ErrorKind::kRange, {.key = "max_parameters"}))
+        << parameters;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/objective/lobes.h"
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/objective/reconstruct.h"
@@ -170,7 +171,8 @@ TEST(PruneAnisotropic, WithoutABudgetNothingMoves) {
   EXPECT_TRUE(less.model.misses_budget);
   EXPECT_LE(less.model.E, 1.1 * less.E_full);
   EXPECT_THAT(less.model.decisions.front().why, HasSubstr("none was found"));
-  EXPECT_THROW(PruneFitOf(material, start, {.max_relative_rise = std::nan("")}), Error);
+  EXPECT_THAT(ErrorOf([&] { PruneFitOf(material, start, {.max_relative_rise = std::nan("")}); }),
+              IsError(ErrorKind::kRange, {.key = "budget"}));
 }
 
 TEST(PruneAnisotropic, IsTheSameForAnyNumberOfThreads) {

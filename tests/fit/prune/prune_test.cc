@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/objective/gauge.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/score.h"
@@ -359,7 +360,8 @@ TEST(Prune, BadBudgets) {
   for (const PruneOptions& options : {PruneOptions{.max_relative_rise = std::nan("")},
                                       {.max_psnr_drop_db = std::nan("")},
                                       {.max_parameters = 0}}) {
-    EXPECT_THROW(Prune(fit.objective, fit.model, options), Error);
+    EXPECT_THAT(ErrorOf([&] { Prune(fit.objective, fit.model, options); }),
+                IsError(ErrorKind::kRange, {.key = "budget"}));
   }
 }
 

@@ -9,13 +9,11 @@
 #include <limits>
 #include <set>
 
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr MerlGrid kGrid{.theta_h = 12, .theta_d = 12, .phi_d = 24};
 
@@ -158,11 +156,11 @@ TEST(UsedSamples, AHistogramWeightsAndDrops) {
 TEST(UsedSamples, SayWhereNothingIsLeft) {
   const BrdfSamples samples = ValidSamples(RandomTable(kGrid, 10));
   EXPECT_THAT(ErrorOf([&] { UsedSamples(samples, Ranges(0, 0, 0, 0)); }),
-              HasSubstr("random: no valid sample lies in the directions"));
+              IsError(ErrorKind::kData, {.file = "random", .key = "directions"}));
   const DirectionHistogram other{"other.hist", {2, 2, 2}, std::vector<double>(8, 1.0)};
   EXPECT_THAT(ErrorOf([&] { UsedSamples(samples, other); }),
-              HasSubstr("other.hist: the histogram has 2 x 2 x 2 bins, but the measurement random "
-                        "has 12 x 12 x 24"));
+              IsError(ErrorKind::kMismatch,
+                      {.file = "other.hist", .key = "histogram", .value = "2 x 2 x 2"}));
 }
 
 TEST(ParseHistogram, ReadsWhatItsFormatSays) {
@@ -179,15 +177,20 @@ TEST(ParseHistogram, RefusesWhatIsNone) {
     return ErrorOf([&] { ParseHistogram(bytes, "a.hist"); });
   };
   const std::string good = HistogramBytes(grid, {1, 2});
-  EXPECT_THAT(error(""), HasSubstr("a.hist: not a histogram: it has 0 bytes"));
-  EXPECT_THAT(error(good.substr(0, 20)), HasSubstr("has 28 bytes, but the file has 20"));
-  EXPECT_THAT(error(good + "x"), HasSubstr("has 28 bytes, but the file has 29"));
-  EXPECT_THAT(error(HistogramBytes({0, 1, 2}, {})), HasSubstr("begins with the number of bins 0"));
-  EXPECT_THAT(error(HistogramBytes({1 << 20, 1 << 20, 1 << 20}, {})), HasSubstr("not a histogram"));
-  EXPECT_THAT(error(HistogramBytes(grid, {0, 0})), HasSubstr("all counts are 0"));
+  EXPECT_THAT(error(""),
+              IsError(ErrorKind::kFormat, {.file = "a.hist", .key = "bytes", .value = "0"}));
+  EXPECT_THAT(error(good.substr(0, 20)),
+              IsError(ErrorKind::kFormat, {.key = "bytes", .value = "20"}));
+  EXPECT_THAT(error(good + "x"), IsError(ErrorKind::kFormat, {.key = "bytes", .value = "29"}));
+  EXPECT_THAT(error(HistogramBytes({0, 1, 2}, {})),
+              IsError(ErrorKind::kFormat, {.key = "bins", .value = "0"}));
+  EXPECT_THAT(error(HistogramBytes({1 << 20, 1 << 20, 1 << 20}, {})),
+              IsError(ErrorKind::kFormat, {.key = "bins", .value = "1048576"}));
+  EXPECT_THAT(error(HistogramBytes(grid, {0, 0})), IsError(ErrorKind::kData, {.key = "counts"}));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {-1.0, nan, std::numeric_limits<double>::infinity()}) {
-    EXPECT_THAT(error(HistogramBytes(grid, {1, bad})), HasSubstr("the count of bin 1 is"));
+    EXPECT_THAT(error(HistogramBytes(grid, {1, bad})),
+                IsError(ErrorKind::kRange, {.key = "bin 1"}));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -79,7 +80,8 @@ TEST(FitCache, ThatCannotBeWrittenToHarmsNothing) {
   cache.Keep("key", "content");
   EXPECT_EQ(cache.Find("key"), std::nullopt);
   EXPECT_THAT(ErrorOf([&] { FitCache(directory.Make("file", "")); }),
-              testing::HasSubstr("cannot make the directory"));
+              IsError(ErrorKind::kFile,
+                      {.file = directory.Path("file"), .key = "make", .value = "Not a directory"}));
 }
 
 // Writers and readers of the same keys, in threads of several processes.

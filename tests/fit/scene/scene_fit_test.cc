@@ -365,7 +365,7 @@ TEST(FitScene, OneThatFailsDoesNotStopTheOthers) {
   broken.source = directory.Make("broken.binary", "no measurement");
   const Scene scene{"scene.json", {Material("felt"), broken, Material("rubber")}};
   const auto results = FitScene(scene, Settings(), 1, [](const MaterialFit& fit) {
-    if (fit.name == "rubber") throw Error("the disk is full");
+    if (fit.name == "rubber") throw Error(ErrorKind::kFile, "the disk is full");
   });
   ASSERT_EQ(results.size(), 3U);
   EXPECT_TRUE(results[0].fit.has_value());

@@ -3,19 +3,19 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
-#include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 std::string Header(const std::string& values, const std::string& points) {
   return "TITLE Garnet red\nDATE 1/2/1998\nNUM_POINTS " + points +
@@ -23,7 +23,7 @@ std::string Header(const std::string& values, const std::string& points) {
 }
 
 Measurement Parse(const std::string& text) { return ReadAs("astm", text, "x.astm"); }
-std::string ParseError(const std::string& text) {
+std::optional<Error> ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }
 
@@ -87,23 +87,30 @@ TEST(AstmFile, ReadsWhatCornellMeasured) {
 }
 
 TEST(AstmFile, ErrorsSayWhereAndWhatIsExpected) {
-  EXPECT_THAT(ParseError("TITLE x\n0,0,0,0,1\n"), HasSubstr("x.astm: no line VARS"));
+  EXPECT_THAT(ParseError("TITLE x\n0,0,0,0,1\n"),
+              IsError(ErrorKind::kMissing, {.file = "x.astm", .key = "VARS"}));
   EXPECT_THAT(ParseError("VARS theta_i,phi_i,theta_s,R,G,B\n"),
-              HasSubstr("x.astm: line 1: VARS has no phi_s; expected theta_i,phi_i,theta_s,phi_s"));
-  EXPECT_THAT(ParseError(Header("X,Y,Z", "1")), HasSubstr("line 4: VARS has no R"));
-  EXPECT_THAT(ParseError(Header("R,G", "1")), HasSubstr("names 2 values that are no colour"));
-  EXPECT_THAT(ParseError("VARS theta_i,phi_i,theta_s,phi_s\n"), HasSubstr("names 0 values"));
-  EXPECT_THAT(ParseError(Header("400nm,450nm,x", "1")), HasSubstr("names 3 values"));
-  EXPECT_THAT(ParseError(Header("R,G,B", "many")), HasSubstr("line 3: expected one number after"));
-  EXPECT_EQ(ParseError(Header("R,G,B", "2") + "0,0,0,0,1,1,1\n"),
-            "x.astm: 1 lines of data, and NUM_POINTS announces 2; get the file once more");
-  EXPECT_EQ(ParseError(Header("R,G,B", "1") + "0,0,0,0,1,1\n"),
-            "x.astm: line 5: 6 columns; expected 7, from theta_i to B");
-  EXPECT_EQ(ParseError(Header("R,G,B", "1") + "0,0,0,0,1,one,1\n"),
-            "x.astm: line 5, column 6 (G): 'one' is no number");
+              IsError(ErrorKind::kMissing, {.file = "x.astm", .line = 1, .key = "phi_s"}));
+  EXPECT_THAT(ParseError(Header("X,Y,Z", "1")),
+              IsError(ErrorKind::kMissing, {.line = 4, .key = "R"}));
+  EXPECT_THAT(ParseError(Header("R,G", "1")),
+              IsError(ErrorKind::kUnknown, {.line = 4, .key = "VARS", .value = "2"}));
+  EXPECT_THAT(ParseError("VARS theta_i,phi_i,theta_s,phi_s\n"),
+              IsError(ErrorKind::kUnknown, {.line = 1, .key = "VARS", .value = "0"}));
+  EXPECT_THAT(ParseError(Header("400nm,450nm,x", "1")),
+              IsError(ErrorKind::kUnknown, {.line = 4, .key = "VARS", .value = "3"}));
+  EXPECT_THAT(ParseError(Header("R,G,B", "many")),
+              IsError(ErrorKind::kFormat, {.line = 3, .key = "NUM_POINTS"}));
+  EXPECT_THAT(ParseError(Header("R,G,B", "2") + "0,0,0,0,1,1,1\n"),
+              IsError(ErrorKind::kMismatch, {.file = "x.astm", .key = "NUM_POINTS", .value = "2"}));
   EXPECT_THAT(
-      ParseError(Header("R,G,B", "1") + "45,0,0,0,1,1,1\n"),
-      HasSubstr("column 1 (theta_i): 45 is no such angle; expected radians from 0 to 3.14"));
+      ParseError(Header("R,G,B", "1") + "0,0,0,0,1,1\n"),
+      IsError(ErrorKind::kFormat, {.file = "x.astm", .line = 5, .key = "columns", .value = "6"}));
+  EXPECT_THAT(
+      ParseError(Header("R,G,B", "1") + "0,0,0,0,1,one,1\n"),
+      IsError(ErrorKind::kFormat, {.file = "x.astm", .line = 5, .key = "G", .value = "one"}));
+  EXPECT_THAT(ParseError(Header("R,G,B", "1") + "45,0,0,0,1,1,1\n"),
+              IsError(ErrorKind::kRange, {.line = 5, .key = "theta_i", .value = "45"}));
 }
 
 }  // namespace

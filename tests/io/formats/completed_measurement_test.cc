@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/io/formats/read_as.h"
 #include "tests/model/materials.h"
-#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/reconstruct.h"
@@ -84,7 +84,8 @@ TEST(Complete, IsTheModelForSamplesOnNoGrid) {
 TEST(Complete, RefusesAnAnisotropicModelOfATable) {
   const Measurement foam = LoadMeasurement("synth:foam@30x30x60");
   const FactorModel model = AnalyticModel(ModelSpec::Anisotropic(1), 0.3, 0.2);
-  EXPECT_THAT(ErrorOf([&] { Complete(foam, model, 1); }), testing::HasSubstr("knows no azimuths"));
+  EXPECT_THAT(ErrorOf([&] { Complete(foam, model, 1); }),
+              IsError(ErrorKind::kUnsupported, {.key = "anisotropic"}));
 }
 
 }  // namespace

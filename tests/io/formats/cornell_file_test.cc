@@ -2,22 +2,22 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
-#include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::Each;
-using testing::HasSubstr;
 
 const std::string kHeader = "# a paint\n\n# num wls\n7\n400 450 500 550\n600 650 700\n";
 
-std::string ParseError(const std::string& text) {
+std::optional<Error> ParseError(const std::string& text) {
   return ErrorOf([&] { ReadAs("cornell", text, "x.brdf"); });
 }
 
@@ -45,19 +45,25 @@ TEST(CornellFile, BandsPicksWavelengths) {
 }
 
 TEST(CornellFile, ErrorsSayWhereAndWhatIsExpected) {
-  EXPECT_EQ(ParseError("# none\n"), "x.brdf: no line; expected the number of wavelengths");
-  EXPECT_THAT(ParseError("2.5\n"), HasSubstr("line 1: expected the number of wavelengths, from 1"));
-  EXPECT_EQ(ParseError("3\n400 500\n"), "x.brdf: the file ends after 2 of 3 wavelengths");
-  EXPECT_EQ(ParseError("3\n400 500\n550 600\n"),
-            "x.brdf: line 3: more wavelengths than the 3 announced");
-  EXPECT_EQ(ParseError("3\n400 x\n"), "x.brdf: line 2, column 2 (wavelength): expected a number");
-  EXPECT_EQ(ParseError(kHeader + "0 0 0 0 1 1 1 1 1 1\n"),
-            "x.brdf: line 7: 10 columns; expected 11, from theta_i to 700 nm");
-  EXPECT_EQ(ParseError(kHeader + "0 0 0 0 1 1 1 1 1 1 z\n"),
-            "x.brdf: line 7, column 11 (700 nm): 'z' is no number");
+  EXPECT_THAT(ParseError("# none\n"),
+              IsError(ErrorKind::kMissing, {.file = "x.brdf", .key = "wavelengths"}));
+  EXPECT_THAT(ParseError("2.5\n"), IsError(ErrorKind::kFormat, {.line = 1, .key = "wavelengths"}));
+  EXPECT_THAT(ParseError("3\n400 500\n"),
+              IsError(ErrorKind::kFormat, {.file = "x.brdf", .key = "wavelengths", .value = "2"}));
+  EXPECT_THAT(ParseError("3\n400 500\n550 600\n"),
+              IsError(ErrorKind::kMismatch,
+                      {.file = "x.brdf", .line = 3, .key = "wavelengths", .value = "4"}));
+  EXPECT_THAT(ParseError("3\n400 x\n"),
+              IsError(ErrorKind::kFormat,
+                      {.file = "x.brdf", .line = 2, .key = "wavelength", .value = "x"}));
   EXPECT_THAT(
-      ParseError(kHeader + "30 0 0 0 1 1 1 1 1 1 1\n"),
-      HasSubstr("column 1 (theta_i): 30 is no such angle; expected radians from 0 to 3.14"));
+      ParseError(kHeader + "0 0 0 0 1 1 1 1 1 1\n"),
+      IsError(ErrorKind::kFormat, {.file = "x.brdf", .line = 7, .key = "columns", .value = "10"}));
+  EXPECT_THAT(
+      ParseError(kHeader + "0 0 0 0 1 1 1 1 1 1 z\n"),
+      IsError(ErrorKind::kFormat, {.file = "x.brdf", .line = 7, .key = "700 nm", .value = "z"}));
+  EXPECT_THAT(ParseError(kHeader + "30 0 0 0 1 1 1 1 1 1 1\n"),
+              IsError(ErrorKind::kRange, {.line = 7, .key = "theta_i", .value = "30"}));
 }
 
 // The samples and what is wrong with them, counted by another program. Blue enamel is mostly out of

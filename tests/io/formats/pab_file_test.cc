@@ -2,11 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"
-#include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -30,7 +31,7 @@ std::string File(double theta_i, double phi_i, const std::string& what, bool ani
 }
 
 Measurement Parse(const std::string& text) { return ReadAs("pab", text, "x.dat"); }
-std::string ParseError(const std::string& text) {
+std::optional<Error> ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }
 
@@ -65,18 +66,24 @@ TEST(PabFile, TristimulusAndTheBackOfASample) {
 
 TEST(PabFile, ErrorsSayWhereAndWhatIsExpected) {
   const std::string format = "#format: theta phi BRDF\n";
-  EXPECT_THAT(ParseError("1 2 3\n"),
-              HasSubstr("line 1: expected a line '#format: theta phi BRDF'"));
-  EXPECT_THAT(ParseError(format + "1 2 3\n"), HasSubstr("line 2: expected lines '#intheta'"));
-  EXPECT_THAT(ParseError("#format: theta phi BTDF\n"), HasSubstr("these are transmitted light"));
-  EXPECT_THAT(ParseError("#format: theta phi X\n"), HasSubstr("the format is unknown"));
+  EXPECT_THAT(ParseError("1 2 3\n"), IsError(ErrorKind::kMissing, {.line = 1, .key = "format"}));
+  EXPECT_THAT(ParseError(format + "1 2 3\n"),
+              IsError(ErrorKind::kMissing, {.line = 2, .key = "intheta, inphi"}));
+  EXPECT_THAT(ParseError("#format: theta phi BTDF\n"),
+              IsError(ErrorKind::kUnsupported, {.line = 1, .key = "format", .value = "BTDF"}));
+  EXPECT_THAT(ParseError("#format: theta phi X\n"),
+              IsError(ErrorKind::kUnknown, {.line = 1, .key = "format", .value = "X"}));
   EXPECT_THAT(ParseError("#colorimetry: RGB\n"),
-              HasSubstr("the colorimetry is unknown; only CIE-Y"));
+              IsError(ErrorKind::kUnknown, {.line = 1, .key = "colorimetry", .value = "RGB"}));
   const std::string head = "#intheta 10\n#inphi 0\n" + format;
-  EXPECT_THAT(ParseError(head + "1 2\n"), HasSubstr("line 4"));
-  EXPECT_THAT(ParseError(head + "1 2 x\n"), HasSubstr("'x'"));
-  EXPECT_THAT(ParseError(head + "200 2 1\n"), HasSubstr("200 is no such angle"));
-  EXPECT_THAT(ParseError("#intheta x\n"), HasSubstr("'x'"));
+  EXPECT_THAT(ParseError(head + "1 2\n"),
+              IsError(ErrorKind::kFormat, {.line = 4, .key = "columns", .value = "2"}));
+  EXPECT_THAT(ParseError(head + "1 2 x\n"),
+              IsError(ErrorKind::kFormat, {.line = 4, .key = "value", .value = "x"}));
+  EXPECT_THAT(ParseError(head + "200 2 1\n"),
+              IsError(ErrorKind::kRange, {.line = 4, .key = "theta", .value = "200"}));
+  EXPECT_THAT(ParseError("#intheta x\n"),
+              IsError(ErrorKind::kFormat, {.line = 1, .key = "an angle", .value = "x"}));
 }
 
 }  // namespace

@@ -9,14 +9,13 @@
 #include "core/files/content.h"
 #include "io/pictures/image_file.h"
 #include "tests/core/files/first_bytes.h"
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::StartsWith;
 
 // Name of the format; "" if no format recognises the bytes.
 std::string FormatOf(const std::string& bytes) {
@@ -69,23 +68,35 @@ TEST(RecogniseFormat, IsWhatEveryReaderNames) {
     return ErrorOf([&] { Source("f", bytes).Read(); });
   };
   const std::string as_utf16 = Utf16("\xFF\xFE", kJson, true);
-  EXPECT_THAT(source_error(as_utf16),
-              StartsWith("f: this is a JSON file in UTF-16; save it as UTF-8; a measurement is a"));
-  EXPECT_THAT(source_error("\xEF\xBB\xBF" + kJson), StartsWith("f: this is a JSON file; "));
-  EXPECT_THAT(source_error("\x89HDF\r\n\x1a\n"), StartsWith("f: this is an HDF5 file; "));
-  EXPECT_THAT(source_error("#?RADIANCE\n"), StartsWith("f: this is a Radiance picture; "));
+  EXPECT_THAT(
+      source_error(as_utf16),
+      IsError(ErrorKind::kUnsupported,
+              {.file = "f", .key = "content", .value = "a JSON file in UTF-16; save it as UTF-8"}));
+  EXPECT_THAT(
+      source_error("\xEF\xBB\xBF" + kJson),
+      IsError(ErrorKind::kUnsupported, {.file = "f", .key = "content", .value = "a JSON file"}));
+  EXPECT_THAT(
+      source_error("\x89HDF\r\n\x1a\n"),
+      IsError(ErrorKind::kUnsupported, {.file = "f", .key = "content", .value = "an HDF5 file"}));
+  EXPECT_THAT(source_error("#?RADIANCE\n"),
+              IsError(ErrorKind::kUnsupported,
+                      {.file = "f", .key = "content", .value = "a Radiance picture"}));
   const auto model_error = [](const std::string& bytes) {
-    return ErrorOf([&] { CheckMayBeJson(bytes, "f: not a model file"); });
+    return ErrorOf([&] { CheckMayBeJson(bytes, "f", "not a model file"); });
   };
-  EXPECT_EQ(model_error(as_utf16),
-            "f: not a model file: this is a JSON file in UTF-16; save it as UTF-8");
-  EXPECT_EQ(model_error(std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12)),
-            "f: not a model file: this is a MERL .binary file");
-  EXPECT_EQ(model_error(std::string(1990656, '\0')),
-            "f: not a model file: this is a UTIA .bin file");
-  EXPECT_EQ(ErrorOf([] { ParseProbe("\x89PNG\r\n\x1a\n", "f"); }),
-            "f: not a Radiance picture but a PNG picture; give a light probe as a lat-long .hdr "
-            "file");
+  EXPECT_THAT(
+      model_error(as_utf16),
+      IsError(ErrorKind::kFormat,
+              {.file = "f", .key = "content", .value = "a JSON file in UTF-16; save it as UTF-8"}));
+  EXPECT_THAT(
+      model_error(std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12)),
+      IsError(ErrorKind::kFormat, {.file = "f", .key = "content", .value = "a MERL .binary file"}));
+  EXPECT_THAT(
+      model_error(std::string(1990656, '\0')),
+      IsError(ErrorKind::kFormat, {.file = "f", .key = "content", .value = "a UTIA .bin file"}));
+  EXPECT_THAT(
+      ErrorOf([] { ParseProbe("\x89PNG\r\n\x1a\n", "f"); }),
+      IsError(ErrorKind::kFormat, {.file = "f", .key = "content", .value = "a PNG picture"}));
 }
 
 // The file is named before its size or its bytes are looked at.
@@ -94,15 +105,18 @@ TEST(RecogniseFormat, NamesALargeFile) {
   const std::string path =
       directory.Make("a.binary", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12));
   std::filesystem::resize_file(path, 34992012);
-  EXPECT_EQ(ErrorOf([&] { CheckMayBeJson(BeginningOf(path), path); }),
-            path + ": this is a MERL .binary file");
+  EXPECT_THAT(ErrorOf([&] { CheckMayBeJson(BeginningOf(path), path); }),
+              IsError(ErrorKind::kFormat,
+                      {.file = path, .key = "content", .value = "a MERL .binary file"}));
 }
 
 TEST(RecogniseFormat, APipeIsNotWaitedFor) {
   const TestDirectory directory;
   ASSERT_EQ(mkfifo(directory.Path("pipe").c_str(), 0600), 0);
-  EXPECT_THAT(ErrorOf([&] { ReadModel(directory.Path("pipe")); }),
-              testing::HasSubstr("it is not a regular file"));
+  EXPECT_THAT(
+      ErrorOf([&] { ReadModel(directory.Path("pipe")); }),
+      IsError(ErrorKind::kFile,
+              {.file = directory.Path("pipe"), .key = "read", .value = "not a regular file"}));
 }
 
 TEST(RecogniseFormat, AByteOrderMarkBeforeAModelDoesNoHarm) {

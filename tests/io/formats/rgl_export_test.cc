@@ -12,6 +12,7 @@
 #include "io/formats/completed_measurement.h"
 #include "io/formats/rgl_file.h"
 #include "io/formats/tensor_file.h"
+#include "tests/error_of.h"
 #include "tests/model/materials.h"
 #include "tests/model/spectral_materials.h"
 #include "tests/paths.h"
@@ -171,7 +172,8 @@ TEST(RglExport, OfANoisyMeasurementIsTheSmallestThatIsHardlyWorse) {
   const RglExport file = ExportRgl(model, completed);
   EXPECT_GT(file.median_error, 0.05);
   EXPECT_LE(file.bytes.size(), 400000U);
-  EXPECT_THROW(ExportRgl(model, completed, {.max_error = 0.001}), Error);
+  EXPECT_THAT(ErrorOf([&] { ExportRgl(model, completed, {.max_error = 0.001}); }),
+              IsError(ErrorKind::kLimit, {.key = "max_error", .value = "0.001"}));
 }
 
 TEST(RglExport, TakesAnisotropicModelsAroundTheWholeCircle) {
@@ -188,7 +190,8 @@ TEST(RglExport, TakesFinerTablesForLessError) {
   const RglExport coarse = ExportRgl(model, {.max_error = 0.05}), fine = ExportRgl(model);
   EXPECT_LT(coarse.bytes.size(), fine.bytes.size());
   EXPECT_GT(coarse.median_error, fine.median_error);
-  EXPECT_THROW(ExportRgl(model, {.max_error = 0}), Error);
+  EXPECT_THAT(ErrorOf([&] { ExportRgl(model, {.max_error = 0}); }),
+              IsError(ErrorKind::kLimit, {.key = "max_error", .value = "0"}));
 }
 
 TEST(RglExport, IsAsNearAsItComesWhereNothingElseIsAskedFor) {
@@ -196,12 +199,15 @@ TEST(RglExport, IsAsNearAsItComesWhereNothingElseIsAskedFor) {
   const RglExport file = ExportRgl(model, {.max_theta = 1.4});
   EXPECT_GT(file.median_error, 0.002);
   EXPECT_LT(file.median_error, 0.02);
-  EXPECT_THROW(ExportRgl(model, {.max_error = 0.002, .max_theta = 1.4}), Error);
+  EXPECT_THAT(ErrorOf([&] { ExportRgl(model, {.max_error = 0.002, .max_theta = 1.4}); }),
+              IsError(ErrorKind::kLimit, {.key = "max_error", .value = "0.002"}));
 }
 
 TEST(RglExport, RefusesABlackModel) {
-  EXPECT_THROW(ExportRgl(FactorModel(ModelSpec::SharedFactors(1))), Error);
-  EXPECT_THROW(ExportRgl(FactorModel(ModelSpec::Anisotropic(1))), Error);
+  EXPECT_THAT(ErrorOf([&] { ExportRgl(FactorModel(ModelSpec::SharedFactors(1))); }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "black"}));
+  EXPECT_THAT(ErrorOf([&] { ExportRgl(FactorModel(ModelSpec::Anisotropic(1))); }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "black"}));
 }
 
 }  // namespace

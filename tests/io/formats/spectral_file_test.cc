@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/model/spectral_materials.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/model_file.h"
@@ -15,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 using testing::ElementsAreArray;
-using testing::HasSubstr;
 
 ModelFile FileOf(const ModelSpec& spec, std::vector<double> wavelengths) {
   ModelFile file;
@@ -90,40 +90,36 @@ TEST(SpectralFile, SaysWhatIsWrong) {
   const auto error = [&](const std::function<void(json*)>& spoil) {
     json bad = good;
     spoil(&bad);
-    try {
-      ParseModel(bad.dump(), "bad.json");
-    } catch (const Error& problem) {
-      return std::string(problem.what());
-    }
-    return std::string();
+    return ErrorOf([&] { ParseModel(bad.dump(), "bad.json"); });
   };
-  EXPECT_EQ(error([](json*) {}), "");
+  EXPECT_NO_THROW(ParseModel(good.dump(), "good.json"));
   EXPECT_THAT(error([](json* file) { file->erase("wavelengths"); }),
-              HasSubstr("bad.json: key 'wavelengths' is missing"));
+              IsError(ErrorKind::kMissing, {.file = "bad.json", .key = "wavelengths"}));
   EXPECT_THAT(error([](json* file) { (*file)["wavelengths"] = json::array(); }),
-              HasSubstr("'wavelengths' must have 1 to 1024 entries, not 0"));
-  EXPECT_THAT(error([](json* file) { (*file)["wavelengths"][3] = 560; }),
-              HasSubstr("bad.json: the spectral model: no wavelength between 500 and 560 nm"));
+              IsError(ErrorKind::kRange, {.key = "wavelengths"}));
+  EXPECT_THAT(
+      error([](json* file) { (*file)["wavelengths"][3] = 560; }),
+      IsError(ErrorKind::kMissing, {.file = "bad.json", .key = "wavelengths", .value = "560"}));
   EXPECT_THAT(error([](json* file) { (*file)["wavelengths"][3] = "red"; }),
-              HasSubstr("'wavelengths[3]' must be a number"));
+              IsError(ErrorKind::kFormat, {.key = "wavelengths[3]", .value = "string"}));
   EXPECT_THAT(error([](json* file) { (*file)["wavelengths"].push_back(750); }),
-              HasSubstr("'F' must have 8 entries, not 7"));
+              IsError(ErrorKind::kMismatch, {.key = "F", .value = "7"}));
   EXPECT_THAT(error([](json* file) { (*file)["d"].erase(0); }),
-              HasSubstr("'d' must have 7 entries, not 6"));
+              IsError(ErrorKind::kMismatch, {.key = "d", .value = "6"}));
   EXPECT_THAT(error([](json* file) { (*file)["s"][1][6] = -1; }),
-              HasSubstr("'s[1][6]' must be finite and >= 0"));
+              IsError(ErrorKind::kRange, {.key = "s[1][6]", .value = "-1"}));
   EXPECT_THAT(error([](json* file) {
                 (*file)["F"][2] = {{"size", 90}, {"nodes", {0}}, {"values", {1}}};
               }),
-              HasSubstr("'F[2]' must be an array"));
+              IsError(ErrorKind::kFormat, {.key = "F[2]", .value = "object"}));
   EXPECT_THAT(error([](json* file) { (*file)["sharing"]["D"]["per_channel"] = true; }),
-              HasSubstr("'D[0]' must have 7 entries"));
+              IsError(ErrorKind::kMismatch, {.key = "D[0]", .value = "90"}));
   EXPECT_THAT(error([](json* file) {
                 (*file)["unobserved"]["F"] = {{0}, {1}};
               }),
-              HasSubstr("'unobserved.F' must have 1 entries"));
+              IsError(ErrorKind::kMismatch, {.key = "unobserved.F", .value = "2"}));
   EXPECT_THAT(error([](json* file) { (*file)["version"] = 4; }),
-              HasSubstr("this program reads versions 1 to 3; update it"));
+              IsError(ErrorKind::kUnsupported, {.key = "version", .value = "4"}));
 }
 
 }  // namespace

@@ -9,13 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::HasSubstr;
 
 std::vector<double> Wavelengths(double first, double last, double step) {
   std::vector<double> wavelengths;
@@ -102,11 +100,12 @@ TEST(SpectralColor, RejectsWavelengthsThatMakeNoColour) {
   const auto error = [](const std::vector<double>& wavelengths) {
     return ErrorOf([&] { SpectralColor(wavelengths, "x.brdf"); });
   };
-  EXPECT_EQ(error({400, 450, 440}),
-            "x.brdf: wavelength 440 nm comes after 450 nm; wavelengths must ascend");
-  EXPECT_THAT(error({400, 450, 550, 600, 650}), HasSubstr("no wavelength between 450 and 550 nm"));
-  EXPECT_THAT(error({633}), HasSubstr("do not reach from 450 to 650 nm"));
-  EXPECT_THAT(error({}), HasSubstr("do not reach"));
+  EXPECT_THAT(error({400, 450, 440}),
+              IsError(ErrorKind::kRange, {.file = "x.brdf", .key = "wavelengths", .value = "440"}));
+  EXPECT_THAT(error({400, 450, 550, 600, 650}),
+              IsError(ErrorKind::kMissing, {.key = "wavelengths", .value = "550"}));
+  EXPECT_THAT(error({633}), IsError(ErrorKind::kMissing, {.key = "wavelengths", .value = "633"}));
+  EXPECT_THAT(error({}), IsError(ErrorKind::kMissing, {.key = "wavelengths", .value = "0"}));
 }
 
 std::vector<double> Wavelengths() {

@@ -2,12 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"
-#include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/albedo.h"
 
@@ -49,7 +50,7 @@ const std::string kSpectral = "brdf surface file v9.0",
                   kAnisotropic = "Anisotropic BSDF surface file v8.0";
 
 Measurement Parse(const std::string& text) { return ReadAs("speos", text, "x.brdf"); }
-std::string ParseError(const std::string& text) {
+std::optional<Error> ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }
 
@@ -144,31 +145,33 @@ TEST(SpeosFile, AnAnisotropicFileTakesItsColorFromTheSpectrum) {
 
 TEST(SpeosFile, ErrorsSayWhereAndWhatIsExpected) {
   const std::string head = "OPTIS - brdf surface file v8.0\n";
-  EXPECT_THAT(ParseError("x\n"), HasSubstr("line 1: "));
+  EXPECT_THAT(ParseError("x\n"), IsError(ErrorKind::kFormat, {.line = 1, .key = "header"}));
   EXPECT_THAT(ParseError("OPTIS - brdf surface file v5.1\n"),
-              HasSubstr("version v5.1 is not read; save it anew"));
+              IsError(ErrorKind::kUnsupported, {.line = 1, .key = "version", .value = "v5.1"}));
   EXPECT_THAT(ParseError(head + "1\n"),
-              HasSubstr("line 2: this is the binary mode; save it as text"));
-  EXPECT_THAT(ParseError(head), HasSubstr("the file ends before the mode"));
-  EXPECT_THAT(ParseError(head + "0\nc\n-1\n"), HasSubstr("the length above is none"));
+              IsError(ErrorKind::kUnsupported, {.line = 2, .key = "mode"}));
+  EXPECT_THAT(ParseError(head), IsError(ErrorKind::kMissing, {.line = 2, .key = "the mode"}));
+  EXPECT_THAT(ParseError(head + "0\nc\n-1\n"),
+              IsError(ErrorKind::kRange, {.line = 4, .key = "length", .value = "-1"}));
   EXPECT_THAT(ParseError(head + "0\nc\n1\n-\n0 1\n"),
-              HasSubstr("these are transmitted light; only reflection can be read"));
+              IsError(ErrorKind::kUnsupported, {.line = 6, .key = "reflection"}));
   const std::string begin = head + "0\nc\n1\n-\n1 0\n1\n";
-  EXPECT_THAT(ParseError(begin + "0 1\n"),
-              HasSubstr("line 8: expected the number of incidences, from 1"));
+  EXPECT_THAT(
+      ParseError(begin + "0 1\n"),
+      IsError(ErrorKind::kRange, {.line = 8, .key = "the number of incidences", .value = "0"}));
   EXPECT_THAT(ParseError(begin + "2 1\n5 4\n"),
-              HasSubstr("line 9: 4 is none of ascending incidences from 0 to 90"));
+              IsError(ErrorKind::kRange, {.line = 9, .key = "incidences", .value = "4"}));
   EXPECT_THAT(ParseError(begin + "1 1\n5\n550\n10\n1 3\n0 40 100\n0 1 1 1\n"),
-              HasSubstr("phi goes from 0 to 100; it must go round half a turn or a whole one"));
+              IsError(ErrorKind::kRange, {.line = 14, .key = "phi", .value = "100"}));
   EXPECT_THAT(ParseError(begin + "1 1\n5\n550\n10\n2 1\n0\n5 1\n4 1\n"),
-              HasSubstr("4 is none of ascending theta"));
+              IsError(ErrorKind::kRange, {.line = 15, .key = "theta", .value = "4"}));
   EXPECT_THAT(ParseError(begin + "1 1\n5\n550\nx\n"),
-              HasSubstr("expected a reflectance [%], not 'x'"));
+              IsError(ErrorKind::kFormat, {.line = 11, .key = "a reflectance [%]", .value = "x"}));
   EXPECT_THAT(ParseError(begin + "1 1\n5\n550\n2000\n1 1\n0\n5 1\n"),
-              HasSubstr("the reflectance above is none"));
+              IsError(ErrorKind::kRange, {.line = 14, .key = "reflectance", .value = "20"}));
   const std::string other = begin + "1 13\n5\n" + Row(Steps(400, 700, 25)) + "1\n1 1\n0\n5 1\n";
   EXPECT_THAT(ParseError(other + "1\n1 1\n0\n6 1\n"),
-              HasSubstr("other angles than those of other wavelengths"));
+              IsError(ErrorKind::kMismatch, {.line = 18, .key = "angles"}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/io/formats/source.h"
@@ -36,10 +37,9 @@ TEST(WriteMeasurement, IsReadBackInEveryFormatThatIsWritten) {
 
 TEST(WriteMeasurement, NamesTheEndingsThatThereAre) {
   EXPECT_EQ(WritableFormat("x").name, "merl");
-  EXPECT_EQ(
+  EXPECT_THAT(
       ErrorOf([] { WritableFormat("x.exr"); }),
-      "x.exr: trilobe writes no '.exr'; end the name in .binary for MERL layout, .csv for CSV, "
-      ".bin for UTIA layout");
+      IsError(ErrorKind::kUnsupported, {.file = "x.exr", .key = "ending", .value = ".exr"}));
 }
 
 }  // namespace

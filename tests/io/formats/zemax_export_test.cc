@@ -10,9 +10,9 @@
 
 #include "io/formats/spectrum.h"
 #include "io/formats/zemax_angles.h"
+#include "tests/error_of.h"
 #include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"
-#include "tests/test_directory.h"
 #include "trilobe/model/measurement/albedo.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -131,11 +131,11 @@ TEST(ZemaxExport, FinerTablesAreNearer) {
   EXPECT_LT(fine.median_error, coarse.median_error);
   EXPECT_GT(fine.bytes.size(), coarse.bytes.size());
   EXPECT_THAT(ErrorOf([&] { ExportZemax(brdf, {.max_error = 0}); }),
-              HasSubstr("no file is exact enough: one of"));
+              IsError(ErrorKind::kLimit, {.key = "max_error", .value = "0"}));
   EXPECT_THAT(ErrorOf([&] {
                 ExportZemax({brdf.value, false, {}});
               }),
-              HasSubstr("there is no light to write"));
+              IsError(ErrorKind::kData, {.key = "light"}));
 }
 
 TEST(ZemaxAngles, TurnIntoDirectionsAndBack) {

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
@@ -29,7 +31,7 @@ const std::string kData =
     "TIS\t0.5\n5\t6\t0\n5\t0\t0\n5\t8\t0\nDataEnd\n";
 
 Measurement Parse(const std::string& text) { return ReadAs("zemax", text, "x.bsdf"); }
-std::string ParseError(const std::string& text) {
+std::optional<Error> ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }
 
@@ -91,42 +93,54 @@ TEST(ZemaxFile, IsToldByItsContentOrEnding) {
   const TestDirectory directory;
   const std::string text = kBegin + kAngles + kData;
   EXPECT_EQ(LoadMeasurement(directory.Make("any", text)).counts.valid, 7);
-  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.bsdf", "Sauce Measured\n")); }),
-              HasSubstr("line 1: 'Sauce' is no key of this format"));
+  EXPECT_THAT(
+      ErrorOf([&] { LoadMeasurement(directory.Make("x.bsdf", "Sauce Measured\n")); }),
+      IsError(ErrorKind::kUnknown,
+              {.file = directory.Path("x.bsdf"), .line = 1, .key = "header", .value = "Sauce"}));
 }
 
 TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
-  EXPECT_EQ(ParseError(""), "x.bsdf: line 0: the file ends before DataBegin");
-  EXPECT_THAT(ParseError(kBegin + kData), HasSubstr("the header has no SampleRotation"));
-  EXPECT_THAT(ParseError(kAngles + kData), HasSubstr("the header has no ScatterType"));
+  EXPECT_THAT(ParseError(""), IsError(ErrorKind::kMissing, {.file = "x.bsdf", .key = "DataBegin"}));
+  EXPECT_THAT(ParseError(kBegin + kData),
+              IsError(ErrorKind::kMissing, {.line = 8, .key = "SampleRotation"}));
+  EXPECT_THAT(ParseError(kAngles + kData),
+              IsError(ErrorKind::kMissing, {.line = 11, .key = "ScatterType"}));
   const auto changed = [](const std::string& from, const std::string& after) {
     std::string text = kBegin + kAngles + kData;
     text.replace(text.find(from), from.size(), after);
     return ParseError(text);
   };
-  EXPECT_EQ(changed("BRDF", "BTDF"),
-            "x.bsdf: line 5: ScatterType is BTDF: these are transmitted light; only reflection can "
-            "be read");
-  EXPECT_EQ(changed("Content\tMonochrome", "Content\tLab"),
-            "x.bsdf: line 4: SpectralContent is Lab; only Monochrome, XYZ and RGB can be read");
+  EXPECT_THAT(changed("BRDF", "BTDF"),
+              IsError(ErrorKind::kUnsupported,
+                      {.file = "x.bsdf", .line = 5, .key = "ScatterType", .value = "BTDF"}));
+  EXPECT_THAT(changed("Content\tMonochrome", "Content\tLab"),
+              IsError(ErrorKind::kFormat, {.file = "x.bsdf", .line = 4}));
   EXPECT_THAT(changed("Content\tMonochrome", "Content\tXYZ"),
-              HasSubstr("line 16: expected the line TristimulusX before DataBegin"));
+              IsError(ErrorKind::kMissing, {.line = 16, .key = "TristimulusX"}));
   EXPECT_THAT(changed("Rotation\t2", "Rotation\t2.5"),
-              HasSubstr("line 6: expected the number of angles after SampleRotation"));
-  EXPECT_THAT(changed("Rotation\t2", "Rotation\t1000000000"), HasSubstr("the number of angles"));
+              IsError(ErrorKind::kFormat, {.line = 6, .key = "SampleRotation"}));
+  EXPECT_THAT(changed("Rotation\t2", "Rotation\t1000000000"),
+              IsError(ErrorKind::kFormat, {.line = 6, .key = "SampleRotation"}));
   EXPECT_THAT(changed("Rotation\t2", "Rotation\t3"),
-              HasSubstr("line 7: 2 columns; expected 3, from SampleRotation"));
+              IsError(ErrorKind::kFormat, {.line = 7, .key = "columns", .value = "2"}));
   EXPECT_THAT(changed("0\t90\t180", "0\t90\t90"),
-              HasSubstr("(ScatterAzimuth): 90 must be above the angle before it, 90"));
+              IsError(ErrorKind::kRange, {.line = 11, .key = "ScatterAzimuth", .value = "90"}));
   EXPECT_THAT(changed("0\t20\t100", "0\t20\t200"),
-              HasSubstr("200 is no such angle; expected degrees from 0 to 180"));
-  EXPECT_THAT(changed("0\t20\t100", "0\t20\tnan"), HasSubstr("nan is no such angle"));
-  EXPECT_THAT(changed("TIS", "TES"), HasSubstr("expected TIS"));
-  EXPECT_THAT(changed("1\t2\t0", "1\t2"), HasSubstr("2 columns; expected 3"));
-  EXPECT_THAT(changed("1\t2\t0", "1\tx\t0"), HasSubstr("'x' is no number"));
-  EXPECT_THAT(changed("DataEnd\n", ""), HasSubstr("the file ends before DataEnd"));
-  EXPECT_THAT(changed("DataEnd", "1 2 3"), HasSubstr("there are more data than angles"));
-  EXPECT_THAT(changed("TIS\t0.5\n5\t6\t0\n5\t0\t0\n5\t8\t0\n", ""), HasSubstr("expected TIS"));
+              IsError(ErrorKind::kRange, {.line = 13, .key = "ScatterRadial", .value = "200"}));
+  EXPECT_THAT(changed("0\t20\t100", "0\t20\tnan"),
+              IsError(ErrorKind::kRange, {.line = 13, .key = "ScatterRadial", .value = "nan"}));
+  EXPECT_THAT(changed("TIS", "TES"), IsError(ErrorKind::kFormat, {.line = 17, .key = "TIS"}));
+  EXPECT_THAT(changed("1\t2\t0", "1\t2"),
+              IsError(ErrorKind::kFormat, {.line = 18, .key = "columns", .value = "2"}));
+  EXPECT_THAT(
+      changed("1\t2\t0", "1\tx\t0"),
+      IsError(ErrorKind::kFormat, {.line = 18, .key = "BRDF by ScatterRadial", .value = "x"}));
+  EXPECT_THAT(changed("DataEnd\n", ""),
+              IsError(ErrorKind::kMissing, {.line = 24, .key = "DataEnd"}));
+  EXPECT_THAT(changed("DataEnd", "1 2 3"),
+              IsError(ErrorKind::kMismatch, {.line = 25, .key = "DataEnd"}));
+  EXPECT_THAT(changed("TIS\t0.5\n5\t6\t0\n5\t0\t0\n5\t8\t0\n", ""),
+              IsError(ErrorKind::kFormat, {.line = 21, .key = "TIS"}));
   // Values are samples like any other's.
   EXPECT_EQ(Parse([] {
               std::string text = kBegin + kAngles + kData;
@@ -202,9 +216,9 @@ TEST(ZemaxFile, TristimulusValuesAreRelativeToWhite) {
   ExpectTruth(measurement, /*grey=*/false, /*anisotropic=*/false, 1e-5);
   EXPECT_THAT(measurement.notes, ElementsAre(HasSubstr("X, Y, Z relative to white")));
   EXPECT_THAT(ParseError(text.substr(0, text.find("TristimulusZ"))),
-              HasSubstr("the file ends before TristimulusZ"));
+              IsError(ErrorKind::kMissing, {.line = 43, .key = "TristimulusZ"}));
   EXPECT_THAT(ParseError(text.replace(text.find("TristimulusY"), 12, "TristimulusZ")),
-              HasSubstr("expected TristimulusY"));
+              IsError(ErrorKind::kFormat, {.line = 29, .key = "TristimulusY"}));
 }
 
 TEST(ZemaxFile, ReadsARealMeasurement) {

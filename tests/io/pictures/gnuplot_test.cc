@@ -19,6 +19,7 @@
 #include "core/system/process.h"
 #include "io/pictures/plots.h"
 #include "io/pictures/words.h"
+#include "tests/error_of.h"
 #include "tests/paths.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
@@ -133,26 +134,20 @@ TEST_F(GnuplotTest, DrawsAPictureOfTheAskedSize) {
 }
 
 TEST_F(GnuplotTest, ReportsABadScriptAndLeavesNoFile) {
-  try {
-    DrawPng(Path("a.png"), 400, 300, "set nonsense\n");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith("gnuplot failed: "));
-    EXPECT_THAT(error.what(), testing::HasSubstr("unrecognized option"));
-  }
-  EXPECT_THROW(DrawPng(Path("a.png"), 400, 300, ""), Error);  // draws nothing
+  const auto error = ErrorOf([&] { DrawPng(Path("a.png"), 400, 300, "set nonsense\n"); });
+  EXPECT_THAT(error, IsError(ErrorKind::kFile, {.key = "gnuplot", .value = "failed"}));
+  EXPECT_THAT(error->what(), testing::HasSubstr("unrecognized option"));  // gnuplot's own words
+  EXPECT_THAT(
+      ErrorOf([&] { DrawPng(Path("a.png"), 400, 300, ""); }),
+      IsError(ErrorKind::kFile, {.key = "gnuplot", .value = "no picture"}));  // draws nothing
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
 TEST_F(GnuplotTest, SaysWhichPackageIsMissing) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", Path("empty").c_str(), 1);
-  try {
-    DrawPng(Path("a.png"), 400, 300, "plot x\n");
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("gnuplot-nox"));
-  }
+  EXPECT_THAT(ErrorOf([&] { DrawPng(Path("a.png"), 400, 300, "plot x\n"); }),
+              IsError(ErrorKind::kMissing, {.key = "gnuplot"}));
   setenv("PATH", path.c_str(), 1);
 }
 
@@ -161,7 +156,8 @@ TEST_F(GnuplotTest, ReadsAndWritesBesideThePicture) {
   const FakeGnuplot fake(folder_, "ls -l /proc/$$/fd | sed -n 's/.* \\([012]\\) -> //p' >" +
                                       Path("files") + "\nexit 1\n");
   std::filesystem::create_directory(Path("out"));
-  EXPECT_THROW(DrawPng(Path("out/a.png"), 400, 300, "plot x\n"), Error);
+  EXPECT_THAT(ErrorOf([&] { DrawPng(Path("out/a.png"), 400, 300, "plot x\n"); }),
+              IsError(ErrorKind::kFile, {.key = "gnuplot", .value = "failed"}));
   std::istringstream files(ReadFile(Path("files")));
   int count = 0;
   for (std::string file; std::getline(files, file); ++count) {
@@ -191,16 +187,11 @@ TEST_F(GnuplotTest, EndsOneThatHangsAndWhatItStarted) {
   const itimerval often = {{0, 1000}, {0, 1000}}, never = {};
   setitimer(ITIMER_REAL, &often, nullptr);
   Stopwatch stopwatch;
-  std::string error;
-  try {
-    DrawPng(Path("a.png"), 400, 300, "plot x\n", 0.5);
-  } catch (const Error& e) {
-    error = e.what();
-  }
+  const auto error = ErrorOf([&] { DrawPng(Path("a.png"), 400, 300, "plot x\n", 0.5); });
   const double seconds = stopwatch.Lap();
   setitimer(ITIMER_REAL, &never, nullptr);
   sigaction(SIGALRM, &before, nullptr);
-  EXPECT_EQ(error, "gnuplot was stopped, as it had not drawn the picture after 0.5 seconds");
+  EXPECT_THAT(error, IsError(ErrorKind::kLimit, {.key = "gnuplot", .value = "0.5"}));
   EXPECT_GE(seconds, 0.5);
   EXPECT_LT(seconds, 10);
   std::string child = ReadFile(Path("child"));
@@ -216,12 +207,9 @@ TEST_F(GnuplotTest, DoesNotBelieveHalfAPicture) {
   for (const size_t size : {size_t{8}, whole.size() / 2, whole.size() - 1}) {
     const FakeGnuplot fake(folder_,
                            "head -c " + std::to_string(size) + " " + Path("whole.png") + "\n");
-    try {
-      DrawPng(Path("half.png"), 400, 300, "plot x\n");
-      ADD_FAILURE() << size;
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith("gnuplot drew a part of the picture alone"));
-    }
+    EXPECT_THAT(ErrorOf([&] { DrawPng(Path("half.png"), 400, 300, "plot x\n"); }),
+                IsError(ErrorKind::kFile, {.key = "gnuplot", .value = "part of a picture"}))
+        << size;
     EXPECT_FALSE(std::filesystem::exists(Path("half.png")));
   }
   const FakeGnuplot fake(folder_, "cat " + Path("whole.png") + "\n");
@@ -272,7 +260,8 @@ TEST_F(GnuplotTest, FactorsSayWhatALobeIsAndWhatIsLeftOut) {
   model.parameters()[last] = 40;
   file.unobserved[last] = true;
   const FakeGnuplot fake(folder_, "cat > " + Path("script") + "\nexit 1\n");
-  EXPECT_THROW(DrawFactors(file, Path("factors.png")), Error);
+  EXPECT_THAT(ErrorOf([&] { DrawFactors(file, Path("factors.png")); }),
+              IsError(ErrorKind::kFile, {.key = "gnuplot", .value = "failed"}));
   const std::string script = ReadFile(Path("script"));
   EXPECT_THAT(script, testing::HasSubstr("title 'lobe 1 (nearly diffuse)'"));
   EXPECT_THAT(script, testing::HasSubstr("title 'lobe 2'"));
@@ -288,7 +277,8 @@ TEST_F(GnuplotTest, SlicesSayWhatIsHardlySeenAndWhatWasNotMeasured) {
   const BrdfTable fitted = measured;
   const FakeGnuplot fake(folder_, "cat > " + Path("script") + "\nexit 1\n");
   const auto script_of = [&] {
-    EXPECT_THROW(DrawSlices(measured, fitted, Path("slices.png")), Error);
+    EXPECT_THAT(ErrorOf([&] { DrawSlices(measured, fitted, Path("slices.png")); }),
+                IsError(ErrorKind::kFile, {.key = "gnuplot", .value = "failed"}));
     return ReadFile(Path("script"));
   };
   const std::string whole = script_of();
@@ -334,7 +324,9 @@ TEST_F(GnuplotTest, DrawsAnisotropicPicturesTheSameEachTime) {
   // No azimuths in a table: told before anything is drawn.
   const BrdfTable table = Synthesize(FindSynthMaterial("plastic"), 0, 1, {20, 20, 20});
   std::filesystem::remove(paths[0]);
-  EXPECT_THROW(DrawPictures(file, {.table = &table}, {}, folder_.string(), options), Error);
+  EXPECT_THAT(
+      ErrorOf([&] { DrawPictures(file, {.table = &table}, {}, folder_.string(), options); }),
+      IsError(ErrorKind::kUnsupported, {.key = "anisotropic"}));
   EXPECT_FALSE(std::filesystem::exists(paths[0]));
 }
 
@@ -365,7 +357,8 @@ TEST_F(GnuplotTest, DrawsDegenerateInput) {
   file.unobserved.assign(file.model.parameters().size(), true);
   EXPECT_EQ(DrawPictures(file, {}, {}, folder_.string(), Appearance(1)).size(),
             2U);  // and a sphere
-  EXPECT_THROW(DrawTrace({}, "", Path("none.png")), Error);
+  EXPECT_THAT(ErrorOf([&] { DrawTrace({}, "", Path("none.png")); }),
+              IsError(ErrorKind::kMissing, {.key = "trace"}));
 }
 
 TEST_F(GnuplotTest, WritesTwoSpheresSideBySide) {

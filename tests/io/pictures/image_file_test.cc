@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 
 // Another decoder of PNG than the encoder's own.
@@ -19,7 +21,6 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string Header(int width, int height) {
@@ -55,7 +56,7 @@ std::string Packed() {
   return bytes;
 }
 
-std::string ErrorOfProbe(const std::string& bytes) {
+std::optional<Error> ErrorOfProbe(const std::string& bytes) {
   return ErrorOf([&] { ParseProbe(bytes, "probe.hdr"); });
 }
 
@@ -106,10 +107,12 @@ TEST(ProbeTest, TheLargestAndTheSmallestNumbersAreFinite) {
 TEST(ProbeTest, ACutFileIsAnError) {
   for (const std::string& whole : {Flat(), Packed()}) {
     for (size_t size = 0; size < whole.size(); ++size) {
-      const std::string message = ErrorOfProbe(whole.substr(0, size));
-      const bool tells = message.find("cut off") != std::string::npos ||
-                         message.find("not a Radiance picture") != std::string::npos;
-      ASSERT_TRUE(tells) << size << ": " << message;
+      const auto message = ErrorOfProbe(whole.substr(0, size));
+      ASSERT_THAT(
+          message,
+          testing::AnyOf(IsError(ErrorKind::kFormat, {.file = "probe.hdr", .key = "bytes"}),
+                         IsError(ErrorKind::kFormat, {.file = "probe.hdr", .key = "content"})))
+          << size;
     }
     ParseProbe(whole + "more", "probe.hdr");
   }
@@ -123,8 +126,8 @@ TEST(ProbeTest, WhatIsNoProbeIsAnError) {
         std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 4\n") + std::string(32, '\x80'),
         std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 99999999999 +X 4\n"),
         std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n\n")}) {
-    EXPECT_EQ(ErrorOfProbe(bytes),
-              "probe.hdr: not a Radiance picture; give a light probe as a lat-long .hdr file")
+    EXPECT_THAT(ErrorOfProbe(bytes),
+                IsError(ErrorKind::kFormat, {.file = "probe.hdr", .key = "content"}))
         << bytes;
   }
 }
@@ -135,14 +138,17 @@ TEST(ProbeTest, OtherShapesAreErrors) {
         std::pair(-4, -2), std::pair(200000, 100000), std::pair(2147483646, 1073741823),
         std::pair(8194, 4097)}) {
     EXPECT_THAT(ErrorOfProbe(Header(width, height) + std::string(64, '\x80')),
-                StartsWith("probe.hdr: the picture is " + std::to_string(width) + " x " +
-                           std::to_string(height) + " pixels; "));
+                IsError(ErrorKind::kRange,
+                        {.file = "probe.hdr",
+                         .key = "pixels",
+                         .value = std::to_string(width) + " x " + std::to_string(height)}));
   }
 }
 
 // A header is soon written; the pixels are not made before they can be there.
 TEST(ProbeTest, AHugeHeaderWithoutPixelsIsAnError) {
-  EXPECT_THAT(ErrorOfProbe(Header(8192, 4096) + Bytes({2, 2, 32, 0})), HasSubstr("cut off"));
+  EXPECT_THAT(ErrorOfProbe(Header(8192, 4096) + Bytes({2, 2, 32, 0})),
+              IsError(ErrorKind::kFormat, {.key = "bytes"}));
 }
 
 TEST(ProbeTest, BrokenRowsAreErrors) {
@@ -152,18 +158,23 @@ TEST(ProbeTest, BrokenRowsAreErrors) {
     bytes[at + offset] = static_cast<char>(value);
     return ErrorOfProbe(bytes);
   };
-  EXPECT_EQ(with(3, 17), "probe.hdr: row 0 of the Radiance picture has another length");
-  EXPECT_EQ(with(4, 128 + 17), "probe.hdr: row 0 of the Radiance picture is broken");
-  EXPECT_EQ(with(4, 0), "probe.hdr: row 0 of the Radiance picture is broken");
-  EXPECT_EQ(with(4, 17), "probe.hdr: row 0 of the Radiance picture is broken");
+  EXPECT_THAT(with(3, 17),
+              IsError(ErrorKind::kMismatch, {.file = "probe.hdr", .key = "width", .value = "0"}));
+  EXPECT_THAT(with(4, 128 + 17),
+              IsError(ErrorKind::kFormat, {.file = "probe.hdr", .key = "runs", .value = "0"}));
+  EXPECT_THAT(with(4, 0),
+              IsError(ErrorKind::kFormat, {.file = "probe.hdr", .key = "runs", .value = "0"}));
+  EXPECT_THAT(with(4, 17),
+              IsError(ErrorKind::kFormat, {.file = "probe.hdr", .key = "runs", .value = "0"}));
   std::string old = Flat();
   old.replace(Header(4, 2).size() + 4, 4, Bytes({1, 1, 1, 3}));
-  EXPECT_THAT(ErrorOfProbe(old), HasSubstr("packed as it was before 1991"));
+  EXPECT_THAT(ErrorOfProbe(old),
+              IsError(ErrorKind::kUnsupported, {.key = "packing", .value = "0"}));
 }
 
 TEST(ProbeTest, ABlackProbeIsAnError) {
-  EXPECT_EQ(ErrorOfProbe(Header(4, 2) + std::string(32, '\0')),
-            "probe.hdr: the environment has no light; give one that is not black");
+  EXPECT_THAT(ErrorOfProbe(Header(4, 2) + std::string(32, '\0')),
+              IsError(ErrorKind::kData, {.file = "probe.hdr", .key = "radiance", .value = "0"}));
 }
 
 TEST(ProbeTest, ReadsAFile) {
@@ -172,7 +183,10 @@ TEST(ProbeTest, ReadsAFile) {
   const Environment probe = ReadProbe(path);
   EXPECT_EQ(probe.name, path);
   EXPECT_EQ(probe.radiance, ParseProbe(Flat(), "x").radiance);
-  EXPECT_THAT(ErrorOf([&] { ReadProbe(directory.Path("missing.hdr")); }), HasSubstr("missing.hdr"));
+  EXPECT_THAT(ErrorOf([&] { ReadProbe(directory.Path("missing.hdr")); }),
+              IsError(ErrorKind::kFile, {.file = directory.Path("missing.hdr"),
+                                         .key = "read",
+                                         .value = "No such file or directory"}));
 }
 
 TEST(WritePngTest, AnotherDecoderReadsItBack) {
@@ -197,7 +211,9 @@ TEST(WritePngTest, AnotherDecoderReadsItBack) {
 
 TEST(WritePngTest, NoFolderIsAnError) {
   EXPECT_THAT(ErrorOf([] { WritePng("/nonexistent/folder/a.png", 1, 1, "rgb"); }),
-              HasSubstr("/nonexistent/folder"));
+              IsError(ErrorKind::kFile,
+                      {.key = "write",
+                       .value = "there is no folder '/nonexistent/folder'; make it first"}));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "io/pictures/document.h"
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/factor_model.h"
 
@@ -55,9 +56,11 @@ TEST(ShaderTables, TakeModelsWithoutLobes) {
 TEST(ShaderTables, RefuseWhatFloatsCannotHold) {
   FactorModel model = Ones(ModelSpec::SharedFactors(1));
   model.table(Factor::kF, 0)[3] = 1e60;
-  EXPECT_THROW(MakeShaderTables(model, /*sampled=*/false), Error);
+  EXPECT_THAT(ErrorOf([&] { MakeShaderTables(model, /*sampled=*/false); }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
   model.table(Factor::kF, 0)[3] = -1;
-  EXPECT_THROW(MakeShaderTables(model, /*sampled=*/false), Error);
+  EXPECT_THAT(ErrorOf([&] { MakeShaderTables(model, /*sampled=*/false); }),
+              IsError(ErrorKind::kData, {.key = "parameter 99", .value = "-1"}));
 }
 
 TEST(ShaderFile, HasItsNameOnlyInAComment) {

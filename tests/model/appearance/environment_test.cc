@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "model/appearance/color.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -58,13 +60,8 @@ double TotalLuminance(const Environment& environment) {
   return sum;
 }
 
-std::string ErrorOf(const Environment& environment) {
-  try {
-    DrawLights(environment, 4);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+std::optional<Error> ErrorFrom(const Environment& environment) {
+  return ErrorOf([&] { DrawLights(environment, 4); });
 }
 
 TEST(EnvironmentTest, DrawsTheSameLightsEachTime) {
@@ -174,12 +171,13 @@ TEST(EnvironmentTest, RowsGoDownAndColumnsAroundToTheRight) {
 }
 
 TEST(EnvironmentTest, NoLightIsAnError) {
-  EXPECT_EQ(ErrorOf(Speckled(16, 8)), "");
-  EXPECT_EQ(ErrorOf(Black(16, 8)),
-            "test: the environment has no light; give one that is not black");
+  EXPECT_NO_THROW(DrawLights(Speckled(16, 8), 4));
+  EXPECT_THAT(ErrorFrom(Black(16, 8)),
+              IsError(ErrorKind::kData, {.file = "test", .key = "radiance", .value = "0"}));
   for (const double bad :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THAT(ErrorOf(OnePixel(2, 3, {1, bad, 1})), testing::StartsWith("test: the radiance"));
+    EXPECT_THAT(ErrorFrom(OnePixel(2, 3, {1, bad, 1})),
+                IsError(ErrorKind::kRange, {.file = "test", .key = "radiance"}));
   }
 }
 

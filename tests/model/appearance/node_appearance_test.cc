@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "model/appearance/picture_data.h"
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
@@ -145,7 +145,7 @@ TEST(NodeAppearance, OverflowIsAnError) {
                     },
                     Quick());
               }),
-              testing::HasSubstr("grey: the model's values overflow"));
+              IsError(ErrorKind::kData, {.file = "grey", .key = "model", .value = "overflow"}));
 }
 
 TEST(MaterialOf, IsTheModel) {

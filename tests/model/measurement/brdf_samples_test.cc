@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -77,7 +78,8 @@ TEST(EvenlySpread, IsOfAllPhiDAndOfAboutSoMany) {
   std::vector<int> seen(kLong.phi_d, 0);
   for (const int bin : spread.bins) ++seen[bin % kLong.phi_d];
   EXPECT_GT(std::ranges::min(seen), 0);
-  EXPECT_THROW(EvenlySpread(samples, 0), Error);
+  EXPECT_THAT(ErrorOf([&] { EvenlySpread(samples, 0); }),
+              IsError(ErrorKind::kRange, {.key = "the number of samples", .value = "0"}));
 }
 
 TEST(ThinnedByPlace, KeepsWhatIsRareAndCountsItRight) {
@@ -115,8 +117,10 @@ TEST(ThinnedByPlace, KeepsWhatIsRareAndCountsItRight) {
   const BrdfSamples same = ThinnedByPlace(all, 1, 1);
   EXPECT_EQ(same.bins, all.bins);
   EXPECT_EQ(ThinnedByPlace(all, 100, all.size()).bins, all.bins);  // all are rare
-  EXPECT_THROW(ThinnedByPlace(all, 0, 1), Error);
-  EXPECT_THROW(ThinnedByPlace(all, 1, 0), Error);
+  EXPECT_THAT(ErrorOf([&] { ThinnedByPlace(all, 0, 1); }),
+              IsError(ErrorKind::kRange, {.key = "stride", .value = "0"}));
+  EXPECT_THAT(ErrorOf([&] { ThinnedByPlace(all, 1, 0); }),
+              IsError(ErrorKind::kRange, {.key = "least", .value = "0"}));
 }
 
 TEST(Thinned, KeepsMirroredPairsTogether) {
@@ -197,7 +201,8 @@ TEST(InEveryOtherRow, KeepsOneOfSamplesThatAreAllElsewhere) {
   const BrdfSamples samples = Dense(kEven);
   EXPECT_EQ(InEveryOtherRow(Selected(samples, {kEven.Index(0, 1, 0)})).size(), 1);
   EXPECT_EQ(InEveryOtherRow(Selected(samples, {})).size(), 0);
-  EXPECT_THROW(InEveryOtherRow(Scattered(ValidSamples(RandomTable(kEven, 1)))), Error);
+  EXPECT_THAT(ErrorOf([&] { InEveryOtherRow(Scattered(ValidSamples(RandomTable(kEven, 1)))); }),
+              IsError(ErrorKind::kUnsupported, {.key = "rows"}));
 }
 
 // Against the sums over all samples, bin by bin of the coarse grid.
@@ -257,9 +262,12 @@ TEST(MeansOfFourBins, KeepMirroredPairsTogether) {
 
 TEST(MeansOfFourBins, SaysWhatItCannotHalve) {
   const BrdfSamples odd = Dense({.theta_h = 5, .theta_d = 4, .phi_d = 6});
-  EXPECT_THROW(MeansOfFourBins(odd, 1), Error);
-  EXPECT_THROW(MeansOfFourBins(Scattered(ValidSamples(RandomTable(kFine, 1))), 1), Error);
-  EXPECT_THROW(MeansOfFourBins(Dense(kFine), 0), Error);
+  EXPECT_THAT(ErrorOf([&] { MeansOfFourBins(odd, 1); }),
+              IsError(ErrorKind::kUnsupported, {.key = "bins"}));
+  EXPECT_THAT(ErrorOf([&] { MeansOfFourBins(Scattered(ValidSamples(RandomTable(kFine, 1))), 1); }),
+              IsError(ErrorKind::kUnsupported, {.key = "bins"}));
+  EXPECT_THAT(ErrorOf([&] { MeansOfFourBins(Dense(kFine), 0); }),
+              IsError(ErrorKind::kRange, {.key = "stride", .value = "0"}));
   EXPECT_EQ(MeansOfFourBins(Selected(Dense(kFine), {}), 1).size(), 0);
 }
 

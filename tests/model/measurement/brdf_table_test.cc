@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/measurement/brdf_samples.h"
@@ -50,7 +51,7 @@ TEST(BrdfTable, ValuesAreScaledAsInMerlFiles) {
 TEST(BrdfTable, AnInvalidTableHasNoValidBin) {
   const BrdfTable table = MakeInvalidTable("t", kSmall);
   EXPECT_EQ(std::ranges::count(ValidBins(table), true), 0);
-  EXPECT_THROW(ValidSamples(table), Error);
+  EXPECT_THAT(ErrorOf([&] { ValidSamples(table); }), IsError(ErrorKind::kData, {.key = "bins"}));
 }
 
 // Any one bad plane makes a bin invalid; bins below the surface are, whatever they hold.
@@ -102,12 +103,8 @@ TEST(BrdfTable, LimitAnglesLeavesOutWhatIsBeyondAndKeepsEarlierReasons) {
     EXPECT_EQ(table.stored[0][bin], 1.0);  // values stay
   }
   LimitAngles(0.001, Unmeasured::kBeyondMaxAngle, &table);
-  try {
-    ValidSamples(table);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("--max_angle"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT(ErrorOf([&] { ValidSamples(table); }),
+              IsError(ErrorKind::kData, {.file = "t", .key = "bins"}));
 }
 
 TEST(BrdfSamples, AreTheValidBinsAscending) {

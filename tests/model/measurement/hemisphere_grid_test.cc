@@ -5,14 +5,12 @@
 
 #include <string>
 
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
-
-using testing::HasSubstr;
 
 TEST(HemisphereGrid, FindsItsOwnNodes) {
   for (const HemisphereGrid& grid :
@@ -34,7 +32,7 @@ TEST(HemisphereGrid, IsParsed) {
   for (const char* text : {"", "x", "6", "6x", "x48", "6x48x3", "0x48", "-6x-48", "6.5x4", "60x60",
                            "99999x99999", "99999999999x1"}) {
     EXPECT_THAT(ErrorOf([&] { ParseHemisphereGrid(text); }),
-                HasSubstr("'" + std::string(text) + "' is no grid of directions"))
+                IsError(ErrorKind::kFormat, {.key = "grid of directions", .value = text}))
         << text;
   }
 }

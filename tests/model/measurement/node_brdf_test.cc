@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "tests/test_directory.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -105,10 +105,11 @@ TEST(NodeBrdf, KnowsWhereAllNodesAroundAreMeasured) {
 TEST(NodeBrdf, WantsAValueForEachPair) {
   NodeTable table = RandomTable(2, 3);
   table.rho.pop_back();
-  EXPECT_THAT(ErrorOf([&] { NodeBrdf{table}; }), testing::HasSubstr("random: a table of nodes"));
+  EXPECT_THAT(ErrorOf([&] { NodeBrdf{table}; }),
+              IsError(ErrorKind::kMismatch, {.file = "random", .key = "rho", .value = "35"}));
   table = RandomTable(2, 3);
   table.present.assign(table.present.size(), false);
-  EXPECT_THAT(ErrorOf([&] { NodeBrdf{table}; }), testing::HasSubstr("no pair of nodes"));
+  EXPECT_THAT(ErrorOf([&] { NodeBrdf{table}; }), IsError(ErrorKind::kData, {.key = "present"}));
 }
 
 }  // namespace

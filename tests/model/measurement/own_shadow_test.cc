@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "tests/error_of.h"
 #include "tests/test_directory.h"
 #include "trilobe/core/base/directions.h"
 #include "trilobe/io/formats/source.h"
@@ -205,7 +206,7 @@ TEST(OwnShadow, IsLeftOutAndTold) {
   EXPECT_EQ(told.counts.below_min_theta_d, samples.size() / 4);  // 10 centres of 40
   EXPECT_THAT(told.notes, IsEmpty());
   EXPECT_THAT(ErrorOf([&] { SamplesOf(LoadMeasurement(path, {.min_theta_d_deg = 80})); }),
-              HasSubstr("--min_theta_d"));
+              IsError(ErrorKind::kData, {.file = path, .key = "samples", .value = "0"}));
 }
 
 TEST(LimitThetaD, MarksBinsOfATable) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -80,7 +81,7 @@ TEST(TabulatedBrdfTest, FillsAnEmptyRowFromTheNearestTheta) {
 
 TEST(TabulatedBrdfTest, RejectsATableWithoutAValidBin) {
   const BrdfTable table = MakeInvalidTable("nothing.binary", kGrid);
-  EXPECT_THROW(TabulatedBrdf{table}, Error);
+  EXPECT_THAT(ErrorOf([&] { TabulatedBrdf{table}; }), IsError(ErrorKind::kData, {.key = "bins"}));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/robust_line.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/lobe_light.h"
@@ -198,8 +199,10 @@ TEST(ContinueBeyondData, FAndGGoOnAndLevelOff) {
 TEST(ContinueBeyondData, RefusesAnotherCoverage) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   const std::vector<double> short_one(3, 1);
-  EXPECT_THROW(ContinueBeyondData(short_one, 1, &model), Error);
-  EXPECT_THROW(FillFromNeighbors(short_one, &model), Error);
+  EXPECT_THAT(ErrorOf([&] { ContinueBeyondData(short_one, 1, &model); }),
+              IsError(ErrorKind::kMismatch, {.key = "coverage", .value = "3"}));
+  EXPECT_THAT(ErrorOf([&] { FillFromNeighbors(short_one, &model); }),
+              IsError(ErrorKind::kMismatch, {.key = "coverage", .value = "3"}));
 }
 
 }  // namespace

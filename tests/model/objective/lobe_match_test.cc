@@ -10,6 +10,7 @@
 
 #include "model/objective/gauge.h"
 #include "model/objective/lobes.h"
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/lobe_light.h"
@@ -209,8 +210,10 @@ TEST(LobeMatch, IsOfModelsOfOneForm) {
   finer.g_axis.size = 12;
   stretched.stretches = Stretch{.along = 0.5, .across = 0};
   const ModelFile file = RandomFile(2);
-  EXPECT_THROW(MatchLobes(file, RandomFile(2, own_F)), Error);
-  EXPECT_THROW(MatchLobes(file, RandomFile(2, finer)), Error);
+  EXPECT_THAT(ErrorOf([&] { MatchLobes(file, RandomFile(2, own_F)); }),
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
+  EXPECT_THAT(ErrorOf([&] { MatchLobes(file, RandomFile(2, finer)); }),
+              IsError(ErrorKind::kMismatch, {.key = "spec"}));
   EXPECT_EQ(MatchLobes(file, RandomFile(2, stretched)).agreement, 0);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 
@@ -120,25 +121,25 @@ TEST(SplitLobe, SplitsNothingIntoNothing) {
 }
 
 TEST(SplitLobe, SaysWhyItCannot) {
-  const auto expect_error = [](const FactorModel& model, int lobe, const std::string& part) {
-    try {
-      SplitLobe(model, lobe);
-      FAIL() << part;
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr(part));
-    }
+  const auto error = [](const FactorModel& model, int lobe) {
+    return ErrorOf([&] { SplitLobe(model, lobe); });
   };
   int shared = 0;
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     if (spec.D.per_lobe) continue;
     ++shared;
-    expect_error(RandomModel(spec, 1), 0, "share D");
+    EXPECT_THAT(error(RandomModel(spec, 1), 0),
+                IsError(ErrorKind::kUnsupported, {.key = "lobe", .value = "0"}));
   }
   EXPECT_GT(shared, 0);
-  expect_error(RandomModel(ModelSpec::SharedFactors(kMaxLobes, kGrid), 1), 0, "lobes is 9");
-  expect_error(RandomModel(ModelSpec::SharedFactors(0, kGrid), 1), 0, "no lobe 0");
-  expect_error(RandomModel(ModelSpec::SharedFactors(2, kGrid), 1), 2, "no lobe 2");
-  expect_error(RandomModel(ModelSpec::SharedFactors(2, kGrid), 1), -1, "no lobe -1");
+  EXPECT_THAT(error(RandomModel(ModelSpec::SharedFactors(kMaxLobes, kGrid), 1), 0),
+              IsError(ErrorKind::kRange, {.key = "lobes", .value = "9"}));
+  EXPECT_THAT(error(RandomModel(ModelSpec::SharedFactors(0, kGrid), 1), 0),
+              IsError(ErrorKind::kRange, {.key = "lobe", .value = "0"}));
+  EXPECT_THAT(error(RandomModel(ModelSpec::SharedFactors(2, kGrid), 1), 2),
+              IsError(ErrorKind::kRange, {.key = "lobe", .value = "2"}));
+  EXPECT_THAT(error(RandomModel(ModelSpec::SharedFactors(2, kGrid), 1), -1),
+              IsError(ErrorKind::kRange, {.key = "lobe", .value = "-1"}));
 }
 
 TEST(StrongestLobe, HasTheLargestSumOfS) {
@@ -179,9 +180,12 @@ TEST(MergeLobes, LobesThatDifferInSAndDAloneBecomeOneWithoutLoss) {
 
 TEST(MergeLobes, NamesLobesThatAreNotThere) {
   const FactorModel model = RandomModel(ModelSpec::SharedFactors(2, kMergedGrid), 1);
-  EXPECT_THROW(WithoutLobe(model, 2), Error);
-  EXPECT_THROW(WithLobesMerged(model, 0, -1), Error);
-  EXPECT_THROW(WithLobesMerged(model, 1, 1), Error);
+  EXPECT_THAT(ErrorOf([&] { WithoutLobe(model, 2); }),
+              IsError(ErrorKind::kRange, {.key = "lobe", .value = "2"}));
+  EXPECT_THAT(ErrorOf([&] { WithLobesMerged(model, 0, -1); }),
+              IsError(ErrorKind::kRange, {.key = "lobe", .value = "-1"}));
+  EXPECT_THAT(ErrorOf([&] { WithLobesMerged(model, 1, 1); }),
+              IsError(ErrorKind::kConflict, {.key = "lobe", .value = "1"}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -77,7 +78,8 @@ TEST(ReconstructTest, IsNeverNegative) {
 TEST(ReconstructTest, RejectsAModelThatOverflows) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   for (double& x : model.parameters()) x = 1e300;
-  EXPECT_THROW(Reconstruct(model, "huge.json", kGrid), Error);
+  EXPECT_THAT(ErrorOf([&] { Reconstruct(model, "huge.json", kGrid); }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
 }
 
 TEST(ReconstructTest, IsTheSameForAnyNumberOfThreads) {

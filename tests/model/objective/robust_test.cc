@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/objective.h"
@@ -210,7 +211,9 @@ TEST(Robust, ADeltaThatIsNotAboveZeroIsAnError) {
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), kSpec);
   const FactorModel model = RandomModel(kSpec, 2);
   for (const double delta : {0.0, -0.0, -1.0, -kInfinity, std::nan("")}) {
-    EXPECT_THROW(Reweighted(objective, model, delta), Error) << delta;
+    EXPECT_THAT(ErrorOf([&] { Reweighted(objective, model, delta); }),
+                IsError(ErrorKind::kRange, {.key = "delta"}))
+        << delta;
   }
 }
 

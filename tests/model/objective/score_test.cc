@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/error_of.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/objective/reconstruct.h"
@@ -90,7 +91,8 @@ TEST(ScoreTest, ValuesScoreAsTheModelThatHasThem) {
   EXPECT_EQ(exact.psnr_db, std::numeric_limits<double>::infinity());
   std::vector<Rgb> huge = objective.samples().rho;
   huge[1][2] = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(ScoreValues(objective, huge), Error);
+  EXPECT_THAT(ErrorOf([&] { ScoreValues(objective, huge); }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
 }
 
 // Weights decide which samples are worst: percentage weighs the dim ones up.
@@ -139,7 +141,8 @@ TEST(ScoreTest, RejectsAModelThatOverflows) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   for (double& x : model.parameters()) x = 1e300;
   const Objective objective(ThreeSamples(), model.spec(), FindWeighting("uniform"));
-  EXPECT_THROW(ScoreModel(objective, model), Error);
+  EXPECT_THAT(ErrorOf([&] { ScoreModel(objective, model); }),
+              IsError(ErrorKind::kData, {.key = "model", .value = "overflow"}));
 }
 
 TEST(ScoreTest, IsTheSameForAnyNumberOfThreads) {

@@ -9,6 +9,7 @@
 
 #include "model/objective/gauge.h"
 #include "solvers/sums/cell_sums.h"
+#include "tests/error_of.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -230,7 +231,9 @@ TEST(AwlsAccelerated, WithoutMemoryIsAwlsBlock) {
   MakeSolver("awls_accelerated")->Solve(objective, options, &accelerated);
   EXPECT_TRUE(std::ranges::equal(accelerated.parameters(), block.parameters()));
   options.memory = -1;
-  EXPECT_THROW(MakeSolver("awls_accelerated")->Solve(objective, options, &accelerated), Error);
+  EXPECT_THAT(
+      ErrorOf([&] { MakeSolver("awls_accelerated")->Solve(objective, options, &accelerated); }),
+      IsError(ErrorKind::kRange, {.key = "memory", .value = "-1"}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "model/objective/gauge.h"
 #include "solvers/starts/minima.h"
 #include "solvers/starts/start_elimination.h"
+#include "tests/error_of.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -345,7 +346,8 @@ TEST(MultistartOnly, TriesAsManyAsAskedFor) {
   FactorModel model = RandomModel(objective.spec(), 1);
   SolverOptions options;
   options.starts = 0;
-  EXPECT_THROW(MakeSolver("multistart")->Solve(objective, options, &model), Error);
+  EXPECT_THAT(ErrorOf([&] { MakeSolver("multistart")->Solve(objective, options, &model); }),
+              IsError(ErrorKind::kRange, {.key = "starts", .value = "0"}));
 }
 
 // A joint step on all samples gains more than an iteration of others, and costs more.

@@ -32,13 +32,18 @@ void CheckNumThreads(int num_threads);
 
 template <typename T>
 T& NotNull(T* pointer, const char* name) {
-  if (pointer == nullptr) throw Error(std::string(name) + " must not be null");
+  if (pointer == nullptr) {
+    throw Error(ErrorKind::kMissing, std::string(name) + " must not be null").About(name);
+  }
   return *pointer;
 }
 
 template <typename F>
 void CheckNotEmpty(const std::function<F>& function, const char* name) {
-  if (!function) throw Error(std::string(name) + " must be a function, not empty");
+  if (!function) {
+    throw Error(ErrorKind::kMissing, std::string(name) + " must be a function, not empty")
+        .About(name);
+  }
 }
 
 }  // namespace trilobe

@@ -83,9 +83,11 @@ const std::vector<MeasurementFormat>& MeasurementFormats();
 // does.
 const MeasurementFormat* RecogniseFormat(std::string_view bytes);
 
-// Throws Error, for example "WHAT: this is a MERL .binary file", if the bytes (or the beginning of
-// a file) have a known format that is not JSON.
-void CheckMayBeJson(std::string_view bytes, const std::string& what);
+// Throws Error, for example "FILE: OTHERWISE: this is a MERL .binary file", if the bytes (or the
+// beginning of a file) have a known format that is not JSON. `otherwise` may say what the file is
+// then, as "not a model file".
+void CheckMayBeJson(std::string_view bytes, const std::string& file,
+                    const std::string& otherwise = "");
 
 // The format with the extension of `path`; without an extension, the first that can be written.
 // Throws Error, which lists the known extensions, for others.
