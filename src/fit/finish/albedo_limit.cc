@@ -253,8 +253,14 @@ AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
     measured = MeasuredAlbedoOf(samples);
     for (const Rgb& reflected : measured.reflected) raise(reflected);
     // In other units 1 means nothing: what goes on unmeasured in a cell is its share, and more.
-    for (int c = 0; c < kChannels; ++c) {
-      if (!(limits.everywhere[c] > kOtherUnits)) continue;
+    double largest = 0;
+    for (const Rgb& reflected : measured.reflected) {
+      largest = std::max(largest, std::ranges::max(reflected));
+    }
+    const bool dark = largest < kMostOfUnits && IsInOtherUnits(largest);
+    if (dark) limits.everywhere.fill(kOfShown * largest);
+    for (int c = 0; c < kChannels && !dark; ++c) {
+      if (!IsInOtherUnits(limits.everywhere[c])) continue;
       for (int k = 0; k < MeasuredAlbedo::kCells; ++k) {
         if (!(measured.share[k] >= kHalf)) continue;
         limits.everywhere[c] =

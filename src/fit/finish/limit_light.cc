@@ -113,6 +113,21 @@ FactorModel LightLimit::Refitted(const Objective& data, const TableLayout& layou
   return model;
 }
 
+bool LightLimit::GlowsBeyond(const FactorModel& model) const {
+  constexpr double kSeen = 1.1;  // by more than a refit misses its bounds by
+  if (!isotropic_) return false;
+  std::vector<LightBound> beyond;
+  for (size_t k = 0; k < isotropic_->theta_i.size(); ++k) {
+    const double theta = isotropic_->theta_i[k];
+    if (theta > isotropic_->beyond_theta) beyond.push_back({{theta, 0}, isotropic_->beyond[k]});
+  }
+  const std::vector<Rgb> albedos = AlbedosFrom(beyond, model, num_threads_);
+  for (size_t k = 0; k < beyond.size(); ++k) {
+    if (ExcessOf(albedos[k], beyond[k].limit) > kSeen) return true;
+  }
+  return false;
+}
+
 bool LightLimit::Keep(const Objective& data, const TableLayout& layout, const StopCheck& stop,
                       FactorModel* model) const {
   constexpr double kDear = 0.05;  // a rise of E
@@ -124,13 +139,19 @@ bool LightLimit::Keep(const Objective& data, const TableLayout& layout, const St
   FactorModel kept = LoweredWhereCheap(data, layout, stop, *model);
   LowerWhereExceeded(layout, stop, &kept);
   const bool changed = !std::ranges::equal(kept.parameters(), model->parameters());
-  if (!changed) return false;
+  const bool glows = GlowsBeyond(kept);
+  if (!changed && !glows) return false;
   const double E_kept = data.Value(kept);
   const double cheap = E + std::max(kDear * E, dear_of_energy * data.MeasuredEnergy());
-  if (E_kept > cheap && !stop()) {
+  bool is_refitted = false;
+  if ((E_kept > cheap || glows) && !stop()) {
     FactorModel refitted = Refitted(data, layout, stop, *model);
-    if (data.Value(refitted) < E_kept && Exceeded(refitted).empty()) kept = std::move(refitted);
+    const double E_refitted = data.Value(refitted);
+    is_refitted = Exceeded(refitted).empty() &&
+                  (E_refitted < E_kept || (E_refitted <= cheap && !GlowsBeyond(refitted)));
+    if (is_refitted) kept = std::move(refitted);
   }
+  if (!changed && !is_refitted) return false;
   *model = std::move(kept);
   return true;
 }

@@ -34,7 +34,9 @@ class LightLimit {
   // than a thousandth of a black model's, of the last degrees of the data and beyond. Where that is
   // not enough or dear (5 % and 1e-5 of that energy, of an anisotropic model 1e-4), the model is
   // refitted under the limit (RefitWithinBounds), so that what no sample reads gives way, and of
-  // what they read no more than it takes.
+  // what they read no more than it takes. An isotropic model that glows beyond the data, where more
+  // light comes back than goes on from within (AlbedoLimits::beyond), is refitted as well, and that
+  // is kept where it is not dear.
   bool Keep(const Objective& data, const TableLayout& layout, const StopCheck& stop,
             FactorModel* model) const;
 
@@ -47,6 +49,7 @@ class LightLimit {
                           FactorModel* model) const;
   bool LowerAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
                   FactorModel* model) const;
+  bool GlowsBeyond(const FactorModel& model) const;
   FactorModel LoweredWhereCheap(const Objective& data, const TableLayout& layout,
                                 const StopCheck& stop, const FactorModel& before) const;
   FactorModel Refitted(const Objective& data, const TableLayout& layout, const StopCheck& stop,

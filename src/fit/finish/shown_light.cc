@@ -121,7 +121,7 @@ double ShownLight(const BrdfSamples& samples, const FactorModel& model, int num_
 
 double LimitByShown(const BrdfSamples& samples, const FactorModel& model, int num_threads) {
   const double shown = ShownLight(samples, model, num_threads);
-  if (!(shown > kOtherUnits)) return std::max(1.0, shown);
+  if (!IsInOtherUnits(shown)) return std::max(1.0, shown);
   return (model.spec().anisotropic() ? 1 : 3) * kOfShown * shown;
 }
 

@@ -17,13 +17,18 @@ namespace trilobe {
 // without directions.
 double ShownLight(const BrdfSamples& samples, const FactorModel& model, int num_threads);
 
+// Whether 1 means nothing to samples that show so much light: more is no error of a calibration,
+// and less no material, as black velvet reflects 0.004 and little else is darker.
+inline constexpr double kMostOfUnits = 1.25, kLeastOfUnits = 0.003;
+inline bool IsInOtherUnits(double shown) {
+  return shown > kMostOfUnits || (shown > 0 && shown < kLeastOfUnits);
+}
+
 // How much light a fit to scattered samples may reflect: 1, of which nothing in 1/sr reflects more,
-// or what they show where that is more. More than kOtherUnits is no error of a calibration: such
-// samples are in other units, where 1 means nothing. As some light remains beside the samples, the
-// limit then is kOfShown times what they show, so that k times the samples have k times the limit;
+// or what they show where that is more. As some light remains beside the samples, the limit in
+// other units is kOfShown times what they show, so that k times the samples have k times the limit;
 // three times that for an isotropic model, which has a limit beyond the data besides
 // (AlbedoLimitsOf).
-inline constexpr double kOtherUnits = 1.25;
 inline constexpr double kOfShown = 2;
 double LimitByShown(const BrdfSamples& samples, const FactorModel& model, int num_threads);
 

@@ -276,7 +276,8 @@ class MaterialFitter {
 
   void LimitLight(const Objective& data, const std::optional<LightLimit>& light,
                   PrunedModel* pruned) const {
-    if (!light) return;
+    // The full fit keeps to the limit with what it took to do so.
+    if (!light || light->Exceeded(pruned->model).empty()) return;
     FactorModel limited = pruned->model;
     const Objective of_pruned(data, pruned->model.spec());
     if (!light->Keep(of_pruned, pruned->layout, settings_.stop, &limited)) return;

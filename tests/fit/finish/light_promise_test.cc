@@ -82,7 +82,7 @@ Measurement MetalToForty() {
 
 TEST(LightPromise, OfThreeIncidencesOfAMetal) { EXPECT_LE(Peak(FitOf(MetalToForty())), 1.002); }
 
-TEST(LightPromise, OfAHighlightAlone) {
+Measurement HighlightAlone() {
   Measurement list = List();
   for (int theta_i = 0; theta_i <= 60; theta_i += 15) {
     for (int off = -12; off <= 12; off += 2) {
@@ -93,7 +93,11 @@ TEST(LightPromise, OfAHighlightAlone) {
       }
     }
   }
-  const FitResult fit = Fit(list, {.compare = false});
+  return list;
+}
+
+TEST(LightPromise, OfAHighlightAlone) {
+  const FitResult fit = Fit(HighlightAlone(), {.compare = false});
   EXPECT_LE(Peak(fit.model()), 1.002);
   EXPECT_LT(fit.score.relative_objective, 1e-4);  // 7e-4 where G alone is lowered
 }
@@ -206,6 +210,19 @@ TEST(LightPromise, OfOtherUnits) {
   }
   // While 1 still means something, the little that gives way is beyond the data.
   EXPECT_LT(Fit(Times(4, list), {.compare = false}).score.relative_objective, 2e-5);
+}
+
+// Light beyond the samples is limited by what they show, not by 1 alone.
+TEST(LightPromise, BeyondSamplesInOtherUnits) {
+  const auto peak_of = [](double k, const Measurement& list) {
+    return Peak(FitOf(Times(k, list))) / k;
+  };
+  const double peak = peak_of(1, MetalToForty());
+  for (const double k : {1e-3, 1e3}) EXPECT_NEAR(peak_of(k, MetalToForty()), peak, 0.2 * peak) << k;
+  // A highlight alone tells little of the light beside it.
+  const double in_units = peak_of(1e3, HighlightAlone());
+  EXPECT_LT(in_units, 2);
+  EXPECT_NEAR(peak_of(1e-5, HighlightAlone()), in_units, 1e-3 * in_units);
 }
 
 TEST(LightPromise, OfATableInOtherUnits) {
