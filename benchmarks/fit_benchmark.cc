@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "core/files/file.h"
-#include "io/formats/merl_file.h"
+#include "io/formats/databases/merl_file.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/solver.h"

@@ -1,7 +1,8 @@
 # trilobe_read_rooms(FILE): sets `groups` to the groups that FILE (src/rooms.txt) lists and `rooms` to
 # their rooms, lowest first; GROUP_group_sees to the groups that a group sees; and of each room ROOM_sees
 # to the rooms whose headers its files include, ROOM_group to its group, ROOM_path to its folder below
-# src, and room_in_PATH the other way round.
+# src, ROOM_paths to that and to the folders in it that are no rooms, and room_in_PATH the other way
+# round.
 macro(trilobe_read_rooms file)
   file(STRINGS ${file} room_lines REGEX "^(== )?[a-z]")
   set(groups)
@@ -25,6 +26,27 @@ macro(trilobe_read_rooms file)
     endif()
     set(room_in_${${room_name}_path} ${room_name})
   endforeach()
+  get_filename_component(rooms_folder ${file} DIRECTORY)
+  foreach(room_name IN LISTS rooms)
+    set(${room_name}_paths ${${room_name}_path})
+    file(GLOB room_folders LIST_DIRECTORIES true RELATIVE ${rooms_folder}
+         ${rooms_folder}/${${room_name}_path}/*)
+    foreach(room_folder IN LISTS room_folders)
+      if(IS_DIRECTORY ${rooms_folder}/${room_folder} AND NOT DEFINED room_in_${room_folder})
+        list(APPEND ${room_name}_paths ${room_folder})
+        set(room_in_${room_folder} ${room_name})
+      endif()
+    endforeach()
+  endforeach()
+endmacro()
+
+# trilobe_room_files(OUT ROOM FOLDER PATTERN): files of a room below FOLDER, src or include/trilobe.
+macro(trilobe_room_files out room folder pattern)
+  set(room_patterns)
+  foreach(room_folder IN LISTS ${room}_paths)
+    list(APPEND room_patterns ${folder}/${room_folder}/${pattern})
+  endforeach()
+  file(GLOB ${out} CONFIGURE_DEPENDS ${room_patterns})
 endmacro()
 
 # trilobe_rooms_below(OUT ROOM): ROOM and all rooms that it sees, directly or not, lowest first.

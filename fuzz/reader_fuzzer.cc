@@ -18,9 +18,9 @@
 
 #include "core/base/names.h"
 #include "fit/scene/scene_file.h"
-#include "io/formats/merl_file.h"
-#include "io/formats/rgl_file.h"
-#include "io/formats/utia_file.h"
+#include "io/formats/databases/merl_file.h"
+#include "io/formats/databases/rgl_file.h"
+#include "io/formats/databases/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "model/measurement/anisotropy.h"
 #include "model/measurement/note_symptoms.h"

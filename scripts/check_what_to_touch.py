@@ -98,7 +98,7 @@ SolverEntry MadeUpEntry() {
 
 
 def measurement_format(tree):
-    tree.add("src/io/formats/made_up_file.cc", """#include "trilobe/core/base/error.h"
+    tree.add("src/io/formats/databases/made_up_file.cc", """#include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
@@ -109,7 +109,7 @@ MeasurementFormat MadeUpFormat() {
           .ending = ".made_up",
           .recognise = [](std::string_view bytes) { return bytes.starts_with("made up"); },
           .read = [](std::string_view, const std::string& source, const SourceOptions&) -> Measurement {
-            throw Error(source + ": nothing is in it");
+            throw ErrorIn(ErrorKind::kData, source, "nothing is in it");
           }};
 }
 
@@ -195,7 +195,7 @@ def check_real_formats(wanted):
     """A format whose reader has no header, as nothing else calls it, is named by its own file and its line."""
     registry = "src/io/formats/source.cc"
     names = re.findall(r"^  X\((\w+)\)", (ROOT / registry).read_text(), re.M)
-    counted = [name for name in names if not (ROOT / f"src/io/formats/{name.lower()}_file.h").exists()]
+    counted = [name for name in names if not [*(ROOT / "src/io/formats").rglob(f"{name.lower()}_file.h")]]
     if len(counted) < 4:
         sys.exit(f"{registry} lists {names}, of which no more than {counted} can be counted")
     for name in counted:

@@ -17,7 +17,7 @@
 #include "fit/reports/bin_counts.h"
 #include "fit_module.h"
 #include "io/formats/completed_measurement.h"
-#include "io/formats/utia_file.h"
+#include "io/formats/databases/utia_file.h"
 #include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/fit/as_measurement.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/merl_file.h"
+#include "io/formats/databases/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
 #include "tests/paths.h"

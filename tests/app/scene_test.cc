@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/merl_file.h"
+#include "io/formats/databases/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
 #include "trilobe/core/base/angles.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/rgl_export.h"
-#include "io/formats/rgl_file.h"
+#include "io/formats/databases/rgl_file.h"
+#include "io/formats/exports/rgl_export.h"
 #include "model/spectral_color.h"
 #include "tests/app/run_program.h"
 #include "tests/model/spectral_materials.h"

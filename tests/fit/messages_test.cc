@@ -13,7 +13,7 @@
 #include "core/files/file.h"
 #include "core/files/json_value.h"
 #include "fit/scene/scene_file.h"
-#include "io/formats/merl_file.h"
+#include "io/formats/databases/merl_file.h"
 #include "io/pictures/image_file.h"
 #include "tests/error_of.h"
 #include "tests/test_util.h"

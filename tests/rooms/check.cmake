@@ -32,6 +32,9 @@ endfunction()
 
 expect_failure(core/base/stencil.h "#include \"trilobe/core/system/parallel.h\""
                "core/base/stencil.h: #include \"trilobe/core/system/parallel.h\", but the room base does not see system")
+# A folder that sorts the files of a room is part of it.
+expect_failure(io/formats/text/csv_file.cc "#include \"fit/held_out.h\""
+               "io/formats/text/csv_file.cc: #include \"fit/held_out.h\", but the room formats does not see fit")
 expect_failure(solvers/solver.cc "#include \"../files/file.h\""
                "solvers/solver.cc: write #include \"../files/file.h\" as \"trilobe/GROUP/ROOM/NAME.h\" or")
 expect_failure(solvers/solver.cc "#include \"solvers/solver.h\""

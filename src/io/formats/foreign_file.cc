@@ -6,7 +6,7 @@
 
 #include "core/base/text.h"
 #include "core/files/file.h"
-#include "io/formats/table_columns.h"
+#include "io/formats/text/table_columns.h"
 
 namespace trilobe {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/file_names.h"
-#include "io/formats/utia_file.h"
+#include "io/formats/databases/utia_file.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
 #include "trilobe/model/measurement/measurement_stats.h"

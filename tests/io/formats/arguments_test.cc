@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/merl_file.h"
-#include "io/formats/utia_file.h"
+#include "io/formats/databases/merl_file.h"
+#include "io/formats/databases/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "io/pictures/plots.h"
 #include "model/appearance/node_appearance.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "io/formats/tensor_file.h"
+#include "io/formats/databases/tensor_file.h"
 #include "tests/error_of.h"
 #include "trilobe/io/formats/source.h"
 

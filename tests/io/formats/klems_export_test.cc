@@ -1,4 +1,4 @@
-#include "io/formats/klems_export.h"
+#include "io/formats/exports/klems_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/klems_basis.h"
+#include "io/formats/optical/klems_basis.h"
 #include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"
 #include "trilobe/model/measurement/albedo.h"

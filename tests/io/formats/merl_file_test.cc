@@ -1,4 +1,4 @@
-#include "io/formats/merl_file.h"
+#include "io/formats/databases/merl_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/files/utf16.h"
-#include "io/formats/table_lines.h"
+#include "io/formats/text/table_lines.h"
 #include "tests/error_of.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"

@@ -1,4 +1,4 @@
-#include "io/formats/open_material_export.h"
+#include "io/formats/exports/open_material_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

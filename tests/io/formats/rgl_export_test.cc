@@ -1,4 +1,4 @@
-#include "io/formats/rgl_export.h"
+#include "io/formats/exports/rgl_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "io/formats/completed_measurement.h"
-#include "io/formats/rgl_file.h"
-#include "io/formats/tensor_file.h"
+#include "io/formats/databases/rgl_file.h"
+#include "io/formats/databases/tensor_file.h"
 #include "tests/error_of.h"
 #include "tests/model/materials.h"
 #include "tests/model/spectral_materials.h"

@@ -1,4 +1,4 @@
-#include "io/formats/rgl_file.h"
+#include "io/formats/databases/rgl_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Rules by which bins of an RGL file count as measured (docs/your-data.md).
 
-#include "io/formats/rgl_mask.h"
+#include "io/formats/databases/rgl_mask.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/files/file.h"
-#include "io/formats/rgl_file.h"
+#include "io/formats/databases/rgl_file.h"
 #include "tests/error_of.h"
 #include "tests/io/formats/tensor_bytes.h"
 #include "tests/paths.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/merl_file.h"
-#include "io/formats/rgl_file.h"
+#include "io/formats/databases/merl_file.h"
+#include "io/formats/databases/rgl_file.h"
 #include "tests/error_of.h"
 #include "tests/io/formats/tensor_bytes.h"
 #include "tests/test_directory.h"

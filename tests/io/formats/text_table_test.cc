@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/formats/spectrum.h"
-#include "io/formats/table_columns.h"
+#include "io/formats/text/table_columns.h"
 #include "tests/error_of.h"
 #include "tests/paths.h"
 #include "trilobe/io/formats/source.h"

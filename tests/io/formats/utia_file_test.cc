@@ -1,4 +1,4 @@
-#include "io/formats/utia_file.h"
+#include "io/formats/databases/utia_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/table_columns.h"
+#include "io/formats/text/table_columns.h"
 #include "tests/error_of.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/io/formats/source.h"

@@ -1,4 +1,4 @@
-#include "io/formats/zemax_export.h"
+#include "io/formats/exports/zemax_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/formats/optical/zemax_angles.h"
 #include "io/formats/spectrum.h"
-#include "io/formats/zemax_angles.h"
 #include "tests/error_of.h"
 #include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"

@@ -1,0 +1,323 @@
+#include "io/formats/text/table_columns.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "core/files/text_lines.h"
+#include "io/formats/text/column_words.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/printable.h"
+
+namespace trilobe {
+namespace {
+
+using Role = ColumnRole;
+
+// --- Units ---------------------------------------------------------------------------------------
+
+constexpr std::string_view kAngleUnits[] = {"degrees", "degree", "degs", "deg",  "radians",
+                                            "radian",  "rad",    "gon",  "grad", "gradians"};
+constexpr std::string_view kOtherUnits[] = {
+    "1/sr", "sr^-1", "sr-1", "/sr",  "sr^{-1}", "%",      "percent", "db", "nm",
+    "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
+constexpr std::string_view kPerSteradianKeys[] = {"persr", "1sr", "sr1"};
+constexpr std::string_view kPerSteradian[] = {"1/sr", "sr^-1", "sr-1", "/sr", "sr^{-1}"};
+
+// --- Angles --------------------------------------------------------------------------------------
+
+constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar", "zen", "zn"};
+constexpr std::string_view kPhiWords[] = {"phi",    "azimuthal", "azimuth", "azimut",
+                                          "acimut", "azim",      "az"};
+constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
+                                          "incoming", "l",     "light", "src",         "source",
+                                          "sun",      "solar", "illum", "illumination"};
+constexpr std::string_view kOutgoing[] = {
+    "o",          "out",      "outgoing", "r",        "refl",     "reflected",
+    "reflection", "s",        "sc",       "scat",     "scatter",  "scattered",
+    "scattering", "v",        "view",     "viewing",  "viewer",   "e",
+    "exit",       "emission", "emergent", "obs",      "observer", "observation",
+    "sensor",     "camera",   "det",      "detector", "receiver"};
+// Words that need no word for an angle beside them.
+constexpr std::string_view kIncidentAlone[] = {
+    "inc",          "incident",   "incidence", "incoming",       "aoi",           "ti",
+    "thi",          "sza",        "einfall",   "einfallswinkel", "einfallwinkel", "dincidence",
+    "deincidencia", "diincidenza"};
+constexpr std::string_view kOutgoingAlone[] = {"outgoing",
+                                               "scatter",
+                                               "scattered",
+                                               "scattering",
+                                               "view",
+                                               "viewing",
+                                               "exit",
+                                               "emission",
+                                               "emergence",
+                                               "emission",
+                                               "detector",
+                                               "receiver",
+                                               "to",
+                                               "tho",
+                                               "tr",
+                                               "thr",
+                                               "vza",
+                                               "dobservation",
+                                               "deobservacion",
+                                               "diosservazione",
+                                               "ausfallswinkel",
+                                               "ausfallwinkel",
+                                               "beobachtungswinkel",
+                                               "streuwinkel",
+                                               "detektorwinkel"};
+
+// "angle from specular", "theta_s - theta_spec", "off-specular angle".
+constexpr std::string_view kFromMirror[] = {"fromspec",   "tospec",    "offspec",
+                                            "deltaspec",  "minusspec", "aspecular",
+                                            "frommirror", "tomirror",  "sthetaspec"};
+
+// Role of a theta or phi by the rest of its name.
+std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
+  if (side.empty()) return unsaid;
+  if (IsOneOf(side, kIncident)) return incident;
+  if (IsOneOf(side, kOutgoing)) return outgoing;
+  return std::nullopt;
+}
+
+std::optional<Role> RoleByWords(std::string_view key, std::span<const std::string_view> words,
+                                Role incident, Role outgoing, Role unsaid) {
+  for (const std::string_view word : words) {
+    std::optional<Role> role;
+    if (key.starts_with(word)) {
+      role = RoleBySide(key.substr(word.size()), incident, outgoing, unsaid);
+    }
+    if (!role && key.ends_with(word)) {
+      role = RoleBySide(key.substr(0, key.size() - word.size()), incident, outgoing, unsaid);
+    }
+    if (role) return role;
+  }
+  return std::nullopt;
+}
+
+std::optional<Role> AngleRole(std::string key) {
+  if (key == "angle") return Role::kTheta;
+  if (std::ranges::any_of(kFromMirror, [&](std::string_view word) {
+        return key.find(word) != std::string::npos;
+      })) {
+    return Role::kFromMirror;
+  }
+  for (const std::string_view word : {"angle", "angulo", "angolo", "of"}) {
+    if (const size_t at = key.find(word); at != std::string::npos) key.erase(at, word.size());
+  }
+  if (IsOneOf(key, kIncidentAlone)) return Role::kThetaI;
+  if (IsOneOf(key, kOutgoingAlone)) return Role::kThetaO;
+  if (key == "phase" || key == "pha") return Role::kPhase;
+  if (key == "pi" || key == "saa") return Role::kPhiI;
+  if (key == "po" || key == "pr" || key == "vaa") return Role::kPhiO;
+  if (key == "dphi" || key == "deltaphi" || key == "relativeazimuth" || key == "raa") {
+    return Role::kPhi;
+  }
+  if (const auto role = RoleByWords(key, kThetaWords, Role::kThetaI, Role::kThetaO, Role::kTheta)) {
+    return role;
+  }
+  return RoleByWords(key, kPhiWords, Role::kPhiI, Role::kPhiO, Role::kPhi);
+}
+
+// --- Values --------------------------------------------------------------------------------------
+
+constexpr std::string_view kValues[] = {"brdf",        "bsdf",         "bdrf", "frdb",
+                                        "reflectance", "reflectivity", "refl", "rho",
+                                        "value",       "val",          "fr",   "f"};
+constexpr std::string_view kReflectances[] = {"reflectance", "reflectivity", "refl", "rho"};
+constexpr std::string_view kSaysBrdf[] = {"brdf", "bsdf", "bdrf", "frdb"};
+
+bool SaysReflectance(std::string_view key) {
+  return std::ranges::any_of(kReflectances, [&](auto word) { return key.starts_with(word); }) &&
+         std::ranges::none_of(kSaysBrdf, [&](auto word) { return key.ends_with(word); });
+}
+
+std::optional<Role> ColorRole(std::string_view word) {
+  if (word == "r" || word == "red") return Role::kRed;
+  if (word == "g" || word == "green") return Role::kGreen;
+  if (word == "b" || word == "blue") return Role::kBlue;
+  return std::nullopt;
+}
+
+std::optional<Role> ValueRole(std::string text) {
+  for (const std::string_view suffix : kPerSteradianKeys) TakeSuffix(suffix, &text);
+  const std::string_view key = text;
+  if (IsOneOf(key, kValues)) return Role::kValue;
+  for (const std::string_view word : kValues) {
+    if (!key.starts_with(word)) continue;
+    const std::string_view rest = key.substr(word.size());
+    if (IsOneOf(rest, kValues)) return Role::kValue;  // "brdf value"
+    if (const auto role = ColorRole(rest)) return role;
+  }
+  return ColorRole(key);
+}
+
+struct Scaled {
+  std::string_view name;  // before the name of values, or behind
+  bool behind;
+  ValueScale scale;
+};
+constexpr Scaled kScaled[] = {{"log10", false, ValueScale::kLog10},
+                              {"lg", false, ValueScale::kLog10},
+                              {"ln", false, ValueScale::kLn},
+                              {"db", true, ValueScale::kDecibels}};
+
+// "log10brdf", "brdfdb", or "db" alone: takes the scale off the key.
+ValueScale TakeScale(std::string* key) {
+  if (ValueRole(*key)) return ValueScale::kLinear;  // "FRDB", in French
+  for (const Scaled& scaled : kScaled) {
+    std::string rest = *key;
+    if (rest == scaled.name) {
+      rest = "f";
+    } else if (scaled.behind) {
+      if (!TakeSuffix(scaled.name, &rest)) continue;
+    } else {
+      if (!rest.starts_with(scaled.name)) continue;
+      rest.erase(0, scaled.name.size());
+    }
+    if (!ValueRole(rest)) continue;
+    *key = std::move(rest);
+    return scaled.scale;
+  }
+  return ValueScale::kLinear;
+}
+
+// Whether a number behind this is negative: "-", "lambda = -", but not "brdf-".
+bool IsSigned(std::string_view before) {
+  for (const std::string_view minus : {"-", "\u2212"}) {
+    if (!before.ends_with(minus)) continue;
+    before.remove_suffix(minus.size());
+    return before.empty() || std::isalnum(static_cast<unsigned char>(before.back())) == 0;
+  }
+  return false;
+}
+
+constexpr std::string_view kWavelength[] = {"lambda", "wl", "wavelength"};
+// Names of reflectance before a wavelength alone.
+constexpr std::string_view kReflectanceAt[] = {"r", "band"};
+
+std::string_view BeforeNumber(std::string_view plain) {
+  return plain.substr(0, std::min(plain.find_first_of("0123456789"), plain.size()));
+}
+
+// [nm] "550", "550nm", "0.55 um", "brdf_550", "lambda=550nm"; none for what is no wavelength.
+std::optional<double> WavelengthIn(std::string_view plain, std::string_view unit) {
+  const std::string_view before = BeforeNumber(plain);
+  const std::string word = LettersAndDigits(before);
+  if (IsSigned(before)) return std::nullopt;
+  if (!word.empty() && !IsOneOf(word, kWavelength) && !IsOneOf(word, kReflectanceAt) &&
+      !IsOneOf(word, kValues)) {
+    return std::nullopt;
+  }
+  const std::string_view rest = plain.substr(before.size());
+  double number = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (error != std::errc()) return std::nullopt;
+  const std::string_view after = Trimmed(rest.substr(end - rest.data()));
+  if (after.empty() == unit.empty() && !after.empty()) return std::nullopt;
+  const std::string_view in = after.empty() ? unit : after;
+  const bool micrometres = in == "um" || in == "micron" || in == "microns" ||
+                           (in.empty() && number < 10 && rest.find('.') != std::string_view::npos);
+  if (!micrometres && !in.empty() && in != "nm") return std::nullopt;
+  const double wavelength = micrometres ? 1000 * number : number;
+  if (!(wavelength >= 200 && wavelength <= 20000)) return std::nullopt;
+  return wavelength;
+}
+
+void SetRole(const std::string& plain, TableColumn* column) {
+  if (const auto wavelength = WavelengthIn(Trimmed(plain), column->unit)) {
+    column->role = Role::kBand;
+    column->wavelength = *wavelength;
+    const std::string word = LettersAndDigits(BeforeNumber(plain));
+    column->is_reflectance = IsOneOf(word, kReflectanceAt) || SaysReflectance(word);
+    return;
+  }
+  std::string key = LettersAndDigits(plain);
+  column->scale = TakeScale(&key);
+  if (IsOneOf(key, kWavelength)) {
+    column->role = Role::kWavelength;
+  } else if (const auto value = ValueRole(key)) {
+    column->role = *value;
+    for (const std::string_view suffix : kPerSteradianKeys) {
+      column->per_steradian |= key.ends_with(suffix);
+    }
+    column->is_reflectance = !column->per_steradian && SaysReflectance(key);
+  } else {
+    for (const std::string_view unit : kAngleUnits) {
+      if (!TakeSuffix(unit, &key)) continue;
+      column->unit = unit;
+      break;
+    }
+    column->role = AngleRole(key).value_or(Role::kOther);
+  }
+}
+
+}  // namespace
+
+TableColumn ColumnNamed(std::string_view name) {
+  TableColumn column{.name = std::string(name)};
+  column.is_usual_name = std::ranges::find(kUsualNames, name) != std::end(kUsualNames);
+  std::string plain = Plain(name);
+  const std::string whole = plain, bracket = TakeBracket(&plain);
+  if (const auto unit = UnitIn(bracket)) {
+    column.unit = *unit;
+    column.per_steradian = IsOneOf(*unit, kPerSteradian);
+  } else if (!bracket.empty()) {  // "theta (incident)" and "r (red)"
+    SetRole(whole, &column);
+    if (column.role != Role::kOther) return column;
+  }
+  SetRole(plain, &column);
+  if (column.unit == "db") column.scale = ValueScale::kDecibels;
+  return column;
+}
+
+std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
+  std::vector<TableColumn> columns;
+  for (const std::string& name : names) columns.push_back(ColumnNamed(name));
+  const auto called = [&](std::string_view name) {
+    return std::ranges::find_if(
+        columns, [&](const TableColumn& column) { return IsCalled(column.name, name); });
+  };
+  const auto has = [&](Role role) {
+    return std::ranges::find(columns, role, &TableColumn::role) != columns.end();
+  };
+  // The incidence, the emission and the phase of photometry, and no index and error of others.
+  if (has(Role::kThetaI) || has(Role::kThetaO) || has(Role::kTheta)) return columns;
+  const auto incidence = called("i"), emission = called("e"), phase = called("g");
+  if (incidence == columns.end() || emission == columns.end()) return columns;
+  incidence->role = Role::kThetaI;
+  emission->role = Role::kThetaO;
+  if (phase != columns.end() && !has(Role::kRed) && !has(Role::kBlue)) phase->role = Role::kPhase;
+  return columns;
+}
+
+bool IsCalled(std::string_view name, std::string_view usual) {
+  std::string plain = Plain(name);
+  TakeBracket(&plain);
+  std::string key = LettersAndDigits(plain);
+  for (const std::string_view unit : kAngleUnits) TakeSuffix(unit, &key);
+  return key == LettersAndDigits(usual);
+}
+
+std::optional<double> RadiansIn(std::string_view unit) {
+  if (unit.empty() || unit.starts_with("deg")) return kPi / 180;
+  if (unit.starts_with("gon") || unit.starts_with("grad")) return kPi / 200;
+  if (unit.starts_with("rad")) return 1;
+  return std::nullopt;
+}
+
+std::optional<std::string> UnitIn(std::string_view cell) {
+  std::string plain = Plain(Trimmed(cell));
+  if (plain.size() > 2 && (plain.front() == '[' || plain.front() == '(')) {
+    plain = plain.substr(1, plain.size() - 2);
+  }
+  if (IsOneOf(plain, kAngleUnits) || IsOneOf(plain, kOtherUnits)) return plain;
+  return std::nullopt;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,64 @@
+#ifndef TRILOBE_IO_FORMATS_TEXT_TABLE_COLUMNS_H_
+#define TRILOBE_IO_FORMATS_TEXT_TABLE_COLUMNS_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trilobe {
+
+// Meaning of a column of a text table. The angles come first, as in ColumnLayout::angles.
+enum class ColumnRole {
+  kThetaI,
+  kPhiI,
+  kThetaO,
+  kPhiO,
+  kRed,
+  kGreen,
+  kBlue,
+  kValue,       // for all channels
+  kBand,        // the value at a wavelength
+  kWavelength,  // of the row
+  kTheta,       // of a direction that the name does not say
+  kFromMirror,  // theta_o - theta_i in the plane of incidence, > 0 away from the normal
+  kPhi,
+  kPhase,  // angle between the two directions
+  kOther
+};
+
+// Scale of the numbers in a column of values: f itself, 10 lg f, lg f or ln f.
+enum class ValueScale { kLinear, kDecibels, kLog10, kLn };
+
+// A column by its name: "theta_i", "Theta_i [deg]", "incidence angle (rad)", "red", "550nm".
+struct TableColumn {
+  std::string name;  // as in the file
+  ColumnRole role = ColumnRole::kOther;
+  std::string unit = {};  // as the name says it, in lower case
+  double wavelength = 0;  // [nm] of kBand
+  ValueScale scale = ValueScale::kLinear;
+  bool is_usual_name = false;   // "theta_i", "r", as the library writes it
+  bool per_steradian = false;   // the name says so
+  bool is_reflectance = false;  // "reflectance", "band_865": pi f, as most mean it, or f
+};
+TableColumn ColumnNamed(std::string_view name);
+
+// Columns that stand beside one another, by which "i", "e" and "g" are known.
+std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names);
+
+// Whether a name is this one but for case, punctuation and units of angles.
+bool IsCalled(std::string_view name, std::string_view usual);
+
+// Unit of an angle [rad]; degrees if it has none, nothing for other units.
+std::optional<double> RadiansIn(std::string_view unit);
+
+// "deg", "(rad)", "1/sr": a unit, without its brackets; none for other text.
+std::optional<std::string> UnitIn(std::string_view cell);
+
+inline constexpr const char* kUsualNames[] = {"theta_i", "phi_i", "theta_o", "phi_o",
+                                              "r",       "g",     "b"};
+inline constexpr const char* kUsualColumns = "theta_i,phi_i,theta_o,phi_o,r,g,b";
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_TEXT_TABLE_COLUMNS_H_

@@ -1,0 +1,135 @@
+#include "io/formats/text/table_head.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/files/text_lines.h"
+#include "io/formats/text/table_columns.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
+
+namespace trilobe {
+namespace {
+
+// "theta_i=Angle": what a column holds, and its name in the header, "" in a list of all columns.
+struct NamedColumn {
+  std::string what, in_header;
+};
+
+std::vector<NamedColumn> NamedColumns(const std::string& columns) {
+  const bool by_header = columns.find('=') != std::string::npos;
+  std::vector<NamedColumn> named;
+  for (const std::string_view cell : SplitCells(columns)) {
+    const size_t at = std::min(cell.find('='), cell.size());
+    const std::string_view in_header = at == cell.size() ? cell : cell.substr(at + 1);
+    named.push_back({std::string(Trimmed(cell.substr(0, at))),
+                     by_header ? std::string(Trimmed(in_header)) : std::string()});
+    if (!by_header || !named.back().in_header.empty()) continue;
+    throw Error(ErrorKind::kUnknown,
+                "--columns=" + columns + ": '" + std::string(cell) +
+                    "' names no column of the header; write theta_i=NAME,f=NAME")
+        .About("columns", cell);
+  }
+  return named;
+}
+
+bool IsByHeader(const std::vector<NamedColumn>& named) {
+  return !named.empty() && !named.front().in_header.empty();
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  constexpr size_t kMost = 12;
+  std::string text;
+  for (size_t k = 0; k < std::min(names.size(), kMost); ++k) {
+    text += (k > 0 ? ", '" : "'") + Printable(names[k]) + "'";
+  }
+  return text + (names.size() > kMost ? ", ..." : "");
+}
+
+}  // namespace
+
+TableHead HeadOf(std::string_view text, const std::string& source, const std::string& columns,
+                 bool theta_is_given) {
+  TableHead head{.lines = TextLines(text, source)};
+  if (!columns.empty()) {
+    const std::vector<NamedColumn> named = NamedColumns(columns);
+    const bool by_header = IsByHeader(named);
+    std::vector<std::string> names;
+    for (const NamedColumn& column : named) {
+      names.push_back(by_header ? column.in_header : column.what);
+    }
+    head = by_header ? TableHeadWith(names, text, source) : TableHeadBy(names, text, source);
+  } else if (auto found = FindTableHead(text, source, theta_is_given)) {
+    head = *std::move(found);
+  } else if (auto other = FindTableHead(text, source, /*theta_is_given=*/true)) {
+    head = *std::move(other);  // the layout says what is missing
+  } else {
+    if (!head.lines.Next()) {
+      throw ErrorIn(
+          ErrorKind::kFormat, source,
+          std::string("the file is empty; a table begins with a header row, as ") + kUsualColumns)
+          .About("content", "empty");
+    }
+    while (head.lines.line().starts_with('%') && head.lines.Next()) {
+    }
+    constexpr size_t kOfCuret = 206;  // a sample's number, and its value at each direction
+    if (SplitCells(head.lines.line(), ' ').size() == kOfCuret) {
+      head.lines.Fail(
+          "a line of 206 numbers, as CUReT's list of 61 samples at 205 directions has them, which "
+          "another file names: make a table a sample, theta_i,phi_i,theta_o,phi_o,f");
+    }
+    if (LooksLikeRow(head.lines.line(), 2)) {
+      head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
+                      " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
+                      "columns of a matrix");
+    }
+    head.names = NamesOfFirstLine(head.lines.line());
+  }
+  return head;
+}
+
+std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& header,
+                                   const std::string& columns) {
+  const std::vector<NamedColumn> named = NamedColumns(columns);
+  if (!IsByHeader(named)) return ColumnsNamed(head.names);
+  std::vector<std::string> whats(head.names.size(), "-");
+  for (const auto& [what, in_header] : named) {
+    const std::vector<size_t> at = PositionsOf(in_header, head.names);
+    const std::string begin = "--columns names '" + in_header + "', ";
+    if (at.empty())
+      header.Fail(begin + "and the header has " + Listed(head.names), ErrorKind::kUnknown,
+                  "columns", in_header);
+    if (at.size() > 1) {
+      header.Fail(begin + "which the header has " + std::to_string(at.size()) +
+                      " times; name all columns in their order, as " + kUsualColumns,
+                  ErrorKind::kConflict, "columns", in_header);
+    }
+    if (whats[at[0]] != "-") header.Fail(begin + "twice", ErrorKind::kConflict, "columns", what);
+    const std::string unit = ColumnNamed(head.names[at[0]]).unit;
+    whats[at[0]] = what;
+    if (unit == "db" || (!unit.empty() && RadiansIn(unit))) whats[at[0]] += " [" + unit + "]";
+  }
+  std::vector<TableColumn> found = ColumnsNamed(whats);
+  for (size_t k = 0; k < found.size(); ++k) found[k].name = head.names[k];
+  return found;
+}
+
+void CheckNames(const std::string& columns) {
+  if (columns.empty()) return;
+  std::vector<std::string> whats;
+  for (const NamedColumn& column : NamedColumns(columns)) whats.push_back(column.what);
+  for (const TableColumn& column : ColumnsNamed(whats)) {
+    if (column.role != ColumnRole::kOther || column.name.empty() || column.name == "-") continue;
+    throw Error(
+        ErrorKind::kUnknown,
+        "--columns=" + columns + ": '" + column.name +
+            "' says of no column what it holds; known are theta_i, phi_i, theta_o, phi_o, "
+            "phase, r, g, b, f, 550nm, wavelength, db, log10 and ln; - leaves a column out, "
+            "and theta_i=NAME names one of the header")
+        .About("columns", column.name);
+  }
+}
+
+}  // namespace trilobe

@@ -1,0 +1,42 @@
+#ifndef TRILOBE_IO_FORMATS_TEXT_TABLE_LINES_H_
+#define TRILOBE_IO_FORMATS_TEXT_TABLE_LINES_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace trilobe {
+
+// Theta_i or phi_i [rad] that a line of text gives to the rows below it: "Incidence angle: 30 deg",
+// "# theta_i = 30", "AOI;30". One number, after a name of that angle.
+struct GivenAngle {
+  bool is_theta = true;  // else phi_i
+  double radians = 0;
+};
+std::optional<GivenAngle> GivenAngleIn(std::string_view line);
+
+// The line without a comment (from # on); "#N/A" and the like of spreadsheets begin none.
+std::string_view WithoutComment(std::string_view line);
+
+// Whether a cell stands for a missing measurement: "", "NA", "#N/A".
+bool IsGap(std::string_view cell);
+
+// A number with a decimal comma; none for others.
+std::optional<double> DecimalCommaNumber(std::string_view cell);
+
+// A number as some programs write it: with a degree sign or "deg" behind it, or D before its
+// exponent. None for what is no number.
+std::optional<double> OddNumber(std::string_view cell);
+
+// Reason why a cell holds no number, and advice.
+std::string WhyNoNumber(std::string_view cell);
+
+// Whether a line is but a rule of a table of characters: "|---|:--:|", "+----+----+".
+bool IsRule(std::string_view line);
+
+// Whether a line is text, and not a row that lacks something: its first word has no digit.
+bool IsText(std::string_view line);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_TEXT_TABLE_LINES_H_
