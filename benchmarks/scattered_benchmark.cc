@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "model/objective/batch_evaluator.h"
-#include "solvers/awls/sweep.h"
 #include "solvers/sums/scattered_equations.h"
+#include "solvers/sweep.h"
 #include "trilobe/core/base/directions.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/folded_samples.h"

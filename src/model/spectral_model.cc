@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "core/base/text.h"
+#include "core/base/text.h"
 #include "model/spectral_color.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/value_of.h"
@@ -144,6 +146,13 @@ std::vector<double> Evaluate(const SpectralModel& model, const DirectionPair& di
                   rho);
   for (double& x : rho) x = std::max(x, 0.0);
   return rho;
+}
+
+std::string WavelengthsText(const SpectralModel& model) {
+  const std::vector<double>& all = model.wavelengths();
+  if (all.size() == 1) return "one wavelength, " + Text(all[0]) + " nm";
+  return std::to_string(all.size()) + " wavelengths from " + Text(all.front()) + " to " +
+         Text(all.back()) + " nm";
 }
 
 }  // namespace trilobe

@@ -2,6 +2,7 @@
 #define TRILOBE_MODEL_SPECTRAL_MODEL_H_
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "trilobe/core/base/directions.h"
@@ -86,6 +87,9 @@ std::vector<double> Evaluate(const SpectralModel& model, const DirectionPair& di
 // negative where the spline of G undershoots. rho: [bands].
 void UnclampedValues(const SpectralModel& model, const SampleStencils& stencils,
                      std::span<double> rho);
+
+// "31 wavelengths from 400 to 700 nm", "one wavelength, 550 nm".
+std::string WavelengthsText(const SpectralModel& model);
 
 }  // namespace trilobe
 

@@ -7,12 +7,11 @@
 #include <ostream>
 
 #include "core/base/file_names.h"
+#include "core/base/text.h"
 #include "core/files/file.h"
 #include "core/system/process.h"
 #include "fit/export/nearest_open_pbr.h"
 #include "fit/export/open_pbr.h"
-#include "fit/reports/bands_report.h"
-#include "fit/reports/print.h"
 #include "io/formats/completed_measurement.h"
 #include "io/formats/databases/utia_file.h"
 #include "io/formats/exports/exported_brdf.h"

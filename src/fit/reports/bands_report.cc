@@ -11,13 +11,6 @@ std::string Percent(double share) { return Text(100 * share, 3) + " %"; }
 
 }  // namespace
 
-std::string WavelengthsText(const SpectralModel& model) {
-  const std::vector<double>& all = model.wavelengths();
-  if (all.size() == 1) return "one wavelength, " + Text(all[0]) + " nm";
-  return std::to_string(all.size()) + " wavelengths from " + Text(all.front()) + " to " +
-         Text(all.back()) + " nm";
-}
-
 std::string Describe(const BandsFit& bands, const std::optional<SeenError>& seen) {
   const int count = bands.model.bands();
   int worst = 0;

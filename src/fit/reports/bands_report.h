@@ -7,12 +7,8 @@
 
 #include "trilobe/fit/fit_bands.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/spectral_model.h"
 
 namespace trilobe {
-
-// "31 wavelengths from 400 to 700 nm", "one wavelength, 550 nm".
-std::string WavelengthsText(const SpectralModel& model);
 
 // "31 wavelengths from 400 to 700 nm by 3,495 parameters; E is 0.5 % of a black model's in the
 // mean, 0.9 % at 700 nm; ...". `seen`: the colours beside those measured.

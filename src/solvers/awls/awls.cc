@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "solvers/awls/sweep.h"
+#include "solvers/sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/algebra/element_step.h"
 #include "model/objective/gauge.h"
-#include "solvers/awls/sweep.h"
+#include "solvers/sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -2,8 +2,8 @@
 #include <string>
 #include <utility>
 
-#include "solvers/awls/sweep.h"
 #include "solvers/joint/joint_step.h"
+#include "solvers/sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/awls/sweep.h"
 #include "solvers/diagnosis.h"
+#include "solvers/sweep.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
 

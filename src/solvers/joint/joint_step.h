@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "solvers/awls/sweep.h"
 #include "solvers/joint/nonnegative_step.h"
 #include "solvers/joint/reduction.h"
+#include "solvers/sweep.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"

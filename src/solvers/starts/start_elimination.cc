@@ -5,8 +5,8 @@
 #include <mutex>
 #include <utility>
 
-#include "solvers/awls/sweep.h"
 #include "solvers/joint/joint_step.h"
+#include "solvers/sweep.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/core/system/parallel.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "solvers/awls/sweep.h"
+#include "solvers/sweep.h"
 #include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

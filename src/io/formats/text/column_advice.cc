@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-struct Known {
+struct KnownColumn {
   std::string_view key;  // letters and digits of the name, in lower case
   std::string_view holds;
   std::string_view flag;  // besides --columns; "": there is none
@@ -30,7 +30,7 @@ constexpr std::string_view kNone = "none";
 
 constexpr std::string_view kPolarised = "light of one polarisation; give the mean of both, as f";
 
-constexpr Known kKnownValues[] = {
+constexpr KnownColumn kKnownValues[] = {
     {"ccbrdf", kTimesCosine, kOverCosine},
     {"ccbsdf", kTimesCosine, kOverCosine},
     {"cosinecorrectedbrdf", kTimesCosine, kOverCosine},
@@ -106,7 +106,7 @@ bool Has(const std::vector<TableColumn>& columns, std::string_view key) {
                              [&](const TableColumn& column) { return KeyOf(column) == key; });
 }
 
-std::string Described(const std::vector<TableColumn>& columns, size_t k, const Known& known) {
+std::string Described(const std::vector<TableColumn>& columns, size_t k, const KnownColumn& known) {
   std::string text = "column '" + columns[k].name + "' holds ";
   text += known.holds;
   if (known.flag.empty()) return text;
@@ -188,7 +188,7 @@ std::string AdviceOnValues(const std::vector<TableColumn>& columns) {
       return "column '" + columns[k].name + "' holds logarithms; type " +
              ColumnsFlag(columns, k, "log10") + ", or ln in the place of log10";
     }
-    const auto* const known = std::ranges::find(kKnownValues, KeyOf(columns[k]), &Known::key);
+    const auto* const known = std::ranges::find(kKnownValues, KeyOf(columns[k]), &KnownColumn::key);
     if (known != std::end(kKnownValues)) return Described(columns, k, *known);
   }
   if (Has(columns, "x") && Has(columns, "y") && Has(columns, "z")) {

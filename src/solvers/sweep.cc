@@ -1,4 +1,4 @@
-#include "solvers/awls/sweep.h"
+#include "solvers/sweep.h"
 
 #include <glog/logging.h>
 

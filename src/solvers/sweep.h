@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SOLVERS_AWLS_SWEEP_H_
-#define TRILOBE_SOLVERS_AWLS_SWEEP_H_
+#ifndef TRILOBE_SOLVERS_SWEEP_H_
+#define TRILOBE_SOLVERS_SWEEP_H_
 
 #include <functional>
 #include <memory>
@@ -104,4 +104,4 @@ std::unique_ptr<Sweep> MakeSweep(const Objective& objective, PhaseSeconds* phase
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_AWLS_SWEEP_H_
+#endif  // TRILOBE_SOLVERS_SWEEP_H_
