@@ -74,11 +74,14 @@ class Error : public std::runtime_error {
   }
   template <typename Number>
   requires std::is_arithmetic_v<Number> Error About(std::string_view key, Number value) && {
+    std::string text;
     if constexpr (std::floating_point<Number>) {
-      return std::move(*this).About(key, std::string_view(FactText(static_cast<double>(value))));
+      text = FactText(value);
     } else {
-      return std::move(*this).About(key, std::string_view(std::to_string(value)));
+      text = std::to_string(value);
     }
+    const std::string_view view = text;
+    return std::move(*this).About(key, view);
   }
 
   // The same kind and facts in another sentence, mostly this one after what it belongs to.
