@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/text.h"
-#include "core/base/text.h"
 #include "model/spectral_color.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/value_of.h"

@@ -182,8 +182,9 @@ std::string ResolveTarget(const std::string& path) {
   }
   struct stat status {};
   if (stat(target.c_str(), &status) != 0) return target;
-  if (S_ISDIR(status.st_mode))
+  if (S_ISDIR(status.st_mode)) {
     FailToWrite(path, "it is a directory; give the name of a file", "directory");
+  }
   if (!S_ISREG(status.st_mode)) FailToWrite(path, "it is not a regular file", "not a regular file");
   return target;
 }
@@ -195,8 +196,9 @@ std::string ReadFile(const std::string& path) {
   Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (!file.ok() || fstat(file.get(), &status) != 0) FailToRead(path, std::strerror(errno));
-  if (S_ISDIR(status.st_mode))
+  if (S_ISDIR(status.st_mode)) {
     FailToRead(path, "it is a directory; give the name of a file", "directory");
+  }
   if (!S_ISREG(status.st_mode)) FailToRead(path, "it is not a regular file", "not a regular file");
   if (status.st_size > kMaxFileSize) {
     FailToRead(path,

@@ -119,8 +119,9 @@ TensorFile::TensorFile(std::string_view bytes, const std::string& source) : sour
       size *= extent;
       field.shape.push_back(static_cast<int>(extent));
     }
-    if (size > available)
+    if (size > available) {
       Fail(field.name, "reaches past the end of the file", ErrorKind::kFormat, "beyond the file");
+    }
     field.data = bytes.substr(offset, size);
     fields_.push_back(std::move(field));
   }

@@ -98,9 +98,10 @@ std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& heade
   for (const auto& [what, in_header] : named) {
     const std::vector<size_t> at = PositionsOf(in_header, head.names);
     const std::string begin = "--columns names '" + in_header + "', ";
-    if (at.empty())
+    if (at.empty()) {
       header.Fail(begin + "and the header has " + Listed(head.names), ErrorKind::kUnknown,
                   "columns", in_header);
+    }
     if (at.size() > 1) {
       header.Fail(begin + "which the header has " + std::to_string(at.size()) +
                       " times; name all columns in their order, as " + kUsualColumns,
