@@ -127,7 +127,7 @@ std::string ModelName(const ModelSpec& spec) {
 }
 
 std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptions& options,
-                                  const ModelSpec& spec) {
+                                 const ModelSpec& spec) {
   if (!options.nodes_by_held_out) return {};
   if (!spec.anisotropic()) {
     throw ErrorIn(ErrorKind::kConflict, measurement.source,

@@ -62,7 +62,7 @@ std::string ModelName(const ModelSpec& spec);
 
 // Candidates for ChooseNodes; empty without nodes_by_held_out. Throws Error for an isotropic spec.
 std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptions& options,
-                                  const ModelSpec& spec);
+                                 const ModelSpec& spec);
 
 }  // namespace trilobe
 
