@@ -111,7 +111,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladde
     const Objective judged(held_back, model.spec());
     return judged.Value(model) / judged.MeasuredEnergy();
   };
-  Search search([&](const FactorModel& model) { return -10 * std::log10(relative_E(model)); },
+  double E = 0;  // relative, of the model that is judged
+  Search search([&E](const FactorModel& /*model*/) { return -10 * std::log10(E); },
                 {.over_leader = -10 * std::log10(kWorthwhile)});
   Objective fitted = objective_of(Selected(samples, kept));
   if (options.prior > 0) {
@@ -133,7 +134,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladde
     model =
         model ? WithAxes(*model, rung.spec) : InitialModels().front().make(objective, options.seed);
     const SolverSummary summary = MakeSolver("varpro")->Solve(objective, solver, &*model);
-    search.Try(rung.name, *model, rung.spec.num_parameters(), relative_E(*model));
+    E = relative_E(*model);
+    search.Try(rung.name, *model, rung.spec.num_parameters(), E);
     const bool interrupted = summary.stop_reason == StopReason::kInterrupted;
     // An interrupted fit says nothing against the candidate before.
     if (search.has_leader() && (interrupted || !search.LastLeads())) break;

@@ -247,18 +247,23 @@ std::string FlagText(const Node& node) {
   return node.is_number() ? node.NumberText() : node.String();
 }
 
-// Takes an option, if the node has it, after `set` has tried its text.
-template <typename Row, typename Set>
-void ReadOption(const Node& node, const Row& option, const Set& set,
-                std::map<std::string, std::string>* options) {
-  if (!node.Has(option.name.c_str())) return;
-  const Node value = node[option.name.c_str()];
-  try {
-    set(FlagText(value));
-  } catch (const Error& error) {
-    value.Fail(error.what(), error.kind(), error.facts().value);
+// Takes those options of a table of rows that the node has. Throws Error about the option where its
+// text or `check` does.
+template <typename Options, typename Row>
+void ReadOptionsOf(const Node& node, const std::vector<Row>& rows, void (*check)(const Options&),
+                   std::map<std::string, std::string>* options) {
+  for (const Row& option : rows) {
+    if (!node.Has(option.name.c_str())) continue;
+    const Node value = node[option.name.c_str()];
+    try {
+      Options tried;
+      option.set(FlagText(value), &tried);
+      check(tried);
+    } catch (const Error& error) {
+      value.Fail(error.what(), error.kind(), error.facts().value);
+    }
+    (*options)[option.name] = FlagText(value);
   }
-  (*options)[option.name] = FlagText(value);
 }
 
 void ReadOptions(const Node& node, std::map<std::string, std::string>* options) {
@@ -268,22 +273,8 @@ void ReadOptions(const Node& node, std::map<std::string, std::string>* options) 
     if (option.of_scenes) known.push_back(option.name);
   }
   node.CheckObject(known);
-  for (const SourceOption& option : AllSourceOptions()) {
-    const auto set = [&option](const std::string& text) {
-      SourceOptions tried;
-      option.set(text, &tried);
-      CheckSourceOptions(tried);
-    };
-    ReadOption(node, option, set, options);
-  }
-  for (const FitOption& option : AllFitOptions()) {
-    const auto set = [&option](const std::string& text) {
-      FitOptions tried;
-      option.set(text, &tried);
-      CheckFitOptions(tried);
-    };
-    ReadOption(node, option, set, options);
-  }
+  ReadOptionsOf(node, AllSourceOptions(), CheckSourceOptions, options);
+  ReadOptionsOf(node, AllFitOptions(), CheckFitOptions, options);
 }
 
 // Reads members that a material may have of its own, and a scene for all materials without.
