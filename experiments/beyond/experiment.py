@@ -51,7 +51,7 @@ def _given(setting, source, part):
             file = _samples(setting, source, pattern, count)
             made += [(f"{pattern}:{count}", seed, file,
                       {"corrupt": f"noise:{setting.manifest['noise']}", "data_seed": seed}, None)
-                     for seed in range(1, setting.manifest["data_seeds"] + 1)]
+                     for seed in range(1, part.get("data_seeds", setting.manifest["data_seeds"]) + 1)]
     return made
 
 

@@ -8,6 +8,7 @@
 
 #include "core/system/process.h"
 #include "fit/finish/data_edge.h"
+#include "fit/finish/edge_rings.h"
 #include "fit/finish/limit_light.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
@@ -72,20 +73,20 @@ class NoHarm {
  public:
   // `may_lose`: of the sphere where it was measured [dB].
   NoHarm(const Objective& objective, const FactorModel& before, SphereScores* scores,
-         double may_lose = 0.2)
+         double may_lose = 0.2, double may_lose_beyond = 1)
       : samples_(EvenlySpread(objective.samples(), kSamples)),
         num_threads_(objective.num_threads()),
         scores_(*scores),
         may_lose_(may_lose),
+        may_lose_beyond_(may_lose_beyond),
         measured_(scores->ScoreMeasured(before)),
         beyond_(scores->has_beyond() ? scores->ScoreBeyond(before) : 0),
         log_error_(LogError(before)) {}
 
   bool operator()(const FactorModel& after) const {
-    constexpr double kMayLoseBeyond = 1;  // [dB]
     constexpr double kMayGrow = 0.1;
     return scores_.ScoreMeasured(after) >= measured_ - may_lose_ &&
-           (!scores_.has_beyond() || scores_.ScoreBeyond(after) >= beyond_ - kMayLoseBeyond) &&
+           (!scores_.has_beyond() || scores_.ScoreBeyond(after) >= beyond_ - may_lose_beyond_) &&
            LogError(after) <= (1 + kMayGrow) * log_error_;
   }
 
@@ -98,7 +99,7 @@ class NoHarm {
   const BrdfSamples samples_;
   const int num_threads_;
   SphereScores& scores_;
-  const double may_lose_;
+  const double may_lose_, may_lose_beyond_;
   double measured_, beyond_, log_error_;
 };
 
@@ -176,6 +177,24 @@ void EvenOut(const Objective& solved, const StopCheck& stop, SphereScores* score
     return (*no_harm)(even);
   };
   std::optional<FactorModel> even = WithoutRings(solved, fit->model, is_harmless, stop);
+  if (even) fit->model = *std::move(even);
+}
+
+// Removes rings at the end of the data, if the sphere hardly suffers or, without one, E.
+void EvenOutEdge(const FinishOptions& options, SphereScores* scores, FinishedFit* fit) {
+  constexpr double kMayRise = 0.02, kMayLoseBeyond = 3;
+  const Objective data(fit->objective.data(), fit->model.spec());
+  std::optional<NoHarm> no_harm;
+  const auto is_harmless = [&](const FactorModel& even) {
+    if (scores == nullptr) return data.Value(even) <= (1 + kMayRise) * data.Value(fit->model);
+    if (!no_harm) no_harm.emplace(data, fit->model, scores, kMayLoseForRings, kMayLoseBeyond);
+    return (*no_harm)(even);
+  };
+  const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
+  std::optional<LightLimit> limit;
+  if (options.limit_albedo) limit.emplace(data, fit->model);
+  std::optional<FactorModel> even = WithoutEdgeRings(
+      data, fit->model, layout, limit ? &*limit : nullptr, is_harmless, options.stop);
   if (even) fit->model = *std::move(even);
 }
 
@@ -307,6 +326,9 @@ FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorMode
        [&] { Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model); }},
       {"energy", [&] { return options.limit_albedo && !options.stop(); },
        [&] { LimitLightOf(&fit, options.stop); }},
+      {"edge_rings",
+       [&] { return options.smoothness > 0 && !fit.model.spec().anisotropic() && !options.stop(); },
+       [&] { EvenOutEdge(options, scores, &fit); }},
   };
   for (const FinishStep& step : steps) {
     if (step.applies()) Take(step, &fit);

@@ -39,7 +39,8 @@ struct FinishOptions {
 struct FinishingStep {
   // In this order: "robust", "between_samples" (CorrectOvershoot), "data_edge"
   // (TieEntriesAtDataEdge), "form" (ChooseModel), "reflected_light" (MatchReflectance),
-  // "smoothness" (Smoothest), "evenness" (WithoutRings), "energy" (LightLimit).
+  // "smoothness" (Smoothest), "evenness" (WithoutRings), "energy" (LightLimit), "edge_rings"
+  // (WithoutEdgeRings).
   std::string name;
   double objective_before = 0, objective_after = 0;  // E of the data
   double seconds = 0;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "fit/finish/light_bounds.h"
 #include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
@@ -38,10 +39,7 @@ constexpr double kAllAngles = -1;
 bool LimitAlbedo(const AlbedoLimits& limits, double from, const TableLayout& layout,
                  int num_threads, const StopCheck& stop, FactorModel* model);
 
-// The largest directional albedo of an isotropic model over theta_i and channels.
-struct PeakAlbedo {
-  double albedo = 0, theta_i = 0;  // [rad]
-};
+// That of an isotropic model.
 PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads);
 
 }  // namespace trilobe

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -22,30 +23,41 @@ constexpr int kQuickAzimuths = 36;  // of half vectors
 double LookedTheta(int k) { return DegreesToRadians(0.5 * k); }
 double LookedAzimuth(int b) { return 2 * kPi * b / kLookedAzimuths; }
 
-// The albedo of an isotropic model by half of few azimuths, as one half mirrors the other.
-Rgb QuickAlbedo(const PreparedModel<double>& prepared, double theta) {
+// Turns directions about the normal by one azimuth.
+class Turn {
+ public:
+  explicit Turn(double phi) : cos_(std::cos(phi)), sin_(std::sin(phi)) {}
+
+  Direction operator()(const Direction& w) const {
+    return {cos_ * w[0] - sin_ * w[1], sin_ * w[0] + cos_ * w[1], w[2]};
+  }
+
+ private:
+  double cos_, sin_;
+};
+
+// An albedo by few azimuths of half vectors: half of them where one half mirrors the other.
+Rgb QuickAlbedo(const PreparedModel<double>& prepared, bool anisotropic, const PolarAngles& at) {
+  const Turn turned(at.phi);
   Rgb albedo{};
-  VisitReflected(theta, kQuickAzimuths, [&](const DirectionPair& pair, double weight) {
-    if (pair.wo[1] < 0) return;
-    const Rgb value = prepared.Value(pair.wi, pair.wo);
-    for (int c = 0; c < kChannels; ++c) albedo[c] += 2 * weight * value[c];
+  VisitReflected(at.theta, kQuickAzimuths, [&](const DirectionPair& pair, double weight) {
+    if (!anisotropic && pair.wo[1] < 0) return;
+    const Rgb value = anisotropic ? prepared.Value(turned(pair.wi), turned(pair.wo))
+                                  : prepared.Value(pair.wi, pair.wo);
+    for (int c = 0; c < kChannels; ++c) albedo[c] += weight * value[c];
   });
-  for (double& x : albedo) x *= 2 * kPi / kQuickAzimuths;
+  for (double& x : albedo) x *= (anisotropic ? 1 : 2) * 2 * kPi / kQuickAzimuths;
   return albedo;
 }
 
-std::vector<LightBound> NearIsotropic(double share, const Rgb& limit, const FactorModel& model,
-                                      int num_threads) {
+std::vector<Rgb> QuickAlbedos(const std::vector<PolarAngles>& at, const FactorModel& model,
+                              int num_threads) {
   const PreparedModel<double> prepared(model);
-  std::array<Rgb, kLookedThetas> albedos{};
-  ParallelFor(kLookedThetas, num_threads,
-              [&](int k) { albedos[k] = QuickAlbedo(prepared, LookedTheta(k)); });
-  std::vector<LightBound> near;
-  for (int k = 0; k < kLookedThetas; ++k) {
-    const LightBound bound = {{LookedTheta(k), 0}, limit};
-    if (ExcessOf(albedos[k], bound.limit) > share) near.push_back(bound);
-  }
-  return near;
+  const bool anisotropic = model.spec().anisotropic();
+  std::vector<Rgb> albedos(at.size());
+  ParallelFor(static_cast<int>(at.size()), num_threads,
+              [&](int k) { albedos[k] = QuickAlbedo(prepared, anisotropic, at[k]); });
+  return albedos;
 }
 
 // G_m(theta, phi) / cos theta, of each lobe and channel.
@@ -106,10 +118,10 @@ class LobesByShadowing {
 
   std::vector<Rgb> AtKnot(const PreparedModel<double>& prepared, const PolarAngles& at) const {
     const int lobes = model_.spec().lobes;
+    const Turn turned(at.phi);
     std::vector<Rgb> values(lobes), sum(lobes);
     VisitReflected(at.theta, kQuickAzimuths, [&](const DirectionPair& pair, double weight) {
-      prepared.LobeValues(TurnedAboutNormal(pair.wi, at.phi), TurnedAboutNormal(pair.wo, at.phi),
-                          values.data());
+      prepared.LobeValues(turned(pair.wi), turned(pair.wo), values.data());
       for (int m = 0; m < lobes; ++m) {
         for (int c = 0; c < kChannels; ++c) sum[m][c] += weight * values[m][c];
       }
@@ -133,17 +145,28 @@ class LobesByShadowing {
   std::vector<std::vector<Rgb>> K_;  // [knots, ring by ring][lobes]
 };
 
-std::vector<LightBound> NearAnisotropic(double share, const Rgb& limit, const FactorModel& model,
-                                        int num_threads) {
+// A direction that is looked at, and what a lobe at a time says that it reflects.
+struct Looked {
+  PolarAngles at;
+  Rgb albedo;
+};
+
+std::vector<Looked> LookByLobes(const FactorModel& model, int num_threads) {
   const LobesByShadowing lobes(model, num_threads);
-  std::vector<LightBound> near;
+  std::vector<Looked> looked;
   for (int k = 0; k < kLookedThetas; ++k) {
     for (int b = 0; b < kLookedAzimuths; ++b) {
-      const LightBound bound = {{LookedTheta(k), LookedAzimuth(b)}, limit};
-      if (ExcessOf(lobes.Albedo(bound.at), limit) > share) near.push_back(bound);
+      const PolarAngles at = {LookedTheta(k), LookedAzimuth(b)};
+      looked.push_back({at, lobes.Albedo(at)});
     }
   }
-  return near;
+  return looked;
+}
+
+std::vector<PolarAngles> AllThetas() {
+  std::vector<PolarAngles> all;
+  for (int k = 0; k < kLookedThetas; ++k) all.push_back({LookedTheta(k), 0});
+  return all;
 }
 
 }  // namespace
@@ -154,11 +177,11 @@ std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const Factor
   std::vector<Rgb> albedos(bounds.size());
   ParallelFor(static_cast<int>(bounds.size()), num_threads, [&](int k) {
     const double theta = bounds[k].at.theta, phi = bounds[k].at.phi;
+    const Turn turned(phi);
     albedos[k] = DirectionalAlbedo(
         [&](const DirectionPair& pair) {
           return phi == 0 ? prepared.Value(pair.wi, pair.wo)
-                          : prepared.Value(TurnedAboutNormal(pair.wi, phi),
-                                           TurnedAboutNormal(pair.wo, phi));
+                          : prepared.Value(turned(pair.wi), turned(pair.wo));
         },
         theta);
   });
@@ -174,15 +197,46 @@ double ExcessOf(const Rgb& albedo, const Rgb& limit) {
 std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& model,
                                        int num_threads) {
   constexpr double kNear = 0.98, kNearByLobes = 0.95;  // what a quick look may be off by
-  const std::vector<LightBound> near =
-      model.spec().anisotropic() ? NearAnisotropic(kNearByLobes, limit, model, num_threads)
-                                 : NearIsotropic(kNear, limit, model, num_threads);
-  const std::vector<Rgb> albedos = AlbedosFrom(near, model, num_threads);
-  std::vector<LightBound> exceeded;
-  for (size_t k = 0; k < near.size(); ++k) {
-    if (ExcessOf(albedos[k], near[k].limit) > 1 + kLightTolerance) exceeded.push_back(near[k]);
+  constexpr size_t kMost = 180;                        // of which each is costly
+  std::vector<PolarAngles> near_by_lobes = AllThetas();
+  if (model.spec().anisotropic()) {
+    near_by_lobes.clear();
+    for (const Looked& looked : LookByLobes(model, num_threads)) {
+      if (ExcessOf(looked.albedo, limit) > kNearByLobes) near_by_lobes.push_back(looked.at);
+    }
   }
-  return exceeded;
+  const size_t parts = (near_by_lobes.size() + kMost - 1) / kMost;
+  for (size_t part = 0; part < parts; ++part) {
+    std::vector<PolarAngles> some;
+    for (size_t k = part; k < near_by_lobes.size(); k += parts) some.push_back(near_by_lobes[k]);
+    const std::vector<Rgb> quick = QuickAlbedos(some, model, num_threads);
+    std::vector<LightBound> near, exceeded;
+    for (size_t k = 0; k < some.size(); ++k) {
+      if (ExcessOf(quick[k], limit) > kNear) near.push_back({some[k], limit});
+    }
+    const std::vector<Rgb> albedos = AlbedosFrom(near, model, num_threads);
+    for (size_t k = 0; k < near.size(); ++k) {
+      if (ExcessOf(albedos[k], limit) > 1 + kLightTolerance) exceeded.push_back(near[k]);
+    }
+    if (!exceeded.empty()) return exceeded;
+  }
+  return {};
+}
+
+PeakAlbedo PeakOfLookedAt(const FactorModel& model, int num_threads) {
+  constexpr int kLargest = 24;
+  std::vector<Looked> looked = LookByLobes(model, num_threads);
+  std::ranges::stable_sort(looked, std::ranges::greater(),
+                           [](const Looked& x) { return std::ranges::max(x.albedo); });
+  std::vector<LightBound> largest;
+  for (int k = 0; k < kLargest; ++k) largest.push_back({looked[k].at, {}});
+  const std::vector<Rgb> albedos = AlbedosFrom(largest, model, num_threads);
+  PeakAlbedo peak;
+  for (size_t k = 0; k < largest.size(); ++k) {
+    const double here = std::ranges::max(albedos[k]);
+    if (here > peak.albedo) peak = {.albedo = here, .theta_i = largest[k].at.theta};
+  }
+  return peak;
 }
 
 }  // namespace trilobe

@@ -15,6 +15,11 @@ struct LightBound {
   Rgb limit;
 };
 
+// The largest directional albedo of a model over directions and channels.
+struct PeakAlbedo {
+  double albedo = 0, theta_i = 0;  // [rad]
+};
+
 // The directional albedos of a model, isotropic or not, from the directions of bounds, by the rule
 // of DirectionalAlbedo.
 std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
@@ -26,12 +31,16 @@ inline constexpr double kLightTolerance = 1e-3;
 double ExcessOf(const Rgb& albedo, const Rgb& limit);
 
 // Each half degree of theta up to 89.5 degrees and, of an anisotropic model, each 5 degrees of
-// azimuth where its directional albedo exceeds the limit. All are looked at quickly: by fewer
-// azimuths of half vectors and, of an anisotropic model, by lobes, which reflect
+// azimuth where its directional albedo exceeds the limit, or some of many. All are looked at
+// quickly: by fewer azimuths of half vectors and, of an anisotropic model, by lobes, which reflect
 //   A_m(theta, phi) = K_m(theta, phi) G_m(theta, phi) / cos theta,
-// with the smooth K_m interpolated. Those that may exceed are looked at well. The same bits for any
-// number of threads.
+// with the smooth K_m interpolated. Those that may exceed are looked at well, some hundreds at a
+// time; as soon as some do, these stand for all. The same bits for any number of threads.
 std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& model, int num_threads);
+
+// The largest directional albedo of an anisotropic model there: of those that are largest at a
+// quick look.
+PeakAlbedo PeakOfLookedAt(const FactorModel& model, int num_threads);
 
 }  // namespace trilobe
 

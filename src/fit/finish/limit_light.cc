@@ -5,9 +5,9 @@
 #include <iterator>
 #include <utility>
 
-#include "fit/finish/anisotropic_albedo.h"
 #include "fit/finish/light_refit.h"
 #include "fit/finish/lower_g.h"
+#include "fit/finish/shown_light.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/model/axis.h"
 
@@ -27,7 +27,7 @@ std::vector<LightBound> Thinned(std::vector<LightBound> bounds, size_t most) {
 LightLimit::LightLimit(const Objective& data, const FactorModel& fit)
     : num_threads_(data.num_threads()) {
   if (fit.spec().anisotropic()) {
-    everywhere_ = AnisotropicAlbedoLimit(data, fit);
+    everywhere_.fill(LimitByShown(data.samples(), fit, data.num_threads()));
   } else {
     isotropic_ = AlbedoLimitsOf(data, fit);
     everywhere_ = isotropic_->everywhere;
@@ -41,7 +41,7 @@ std::vector<LightBound> LightLimit::Exceeded(const FactorModel& model) const {
 bool LightLimit::LowerCoarsely(const TableLayout& layout, const StopCheck& stop,
                                FactorModel* model) const {
   return isotropic_ ? LimitAlbedo(*isotropic_, kAllAngles, layout, num_threads_, stop, model)
-                    : LimitAnisotropicAlbedo(everywhere_, layout, num_threads_, stop, model);
+                    : LowerWhereExceeded(layout, stop, model);
 }
 
 bool LightLimit::LowerAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
@@ -53,14 +53,13 @@ bool LightLimit::LowerAtEnd(double within, const TableLayout& layout, const Stop
 }
 
 bool LightLimit::Lower(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const {
-  bool changed = LowerCoarsely(layout, stop, model);
-  changed |= LowerWhereExceeded(layout, stop, model);
-  return changed;
+  const bool changed = isotropic_ && LowerCoarsely(layout, stop, model);
+  return LowerWhereExceeded(layout, stop, model) || changed;
 }
 
 bool LightLimit::LowerWhereExceeded(const TableLayout& layout, const StopCheck& stop,
                                     FactorModel* model) const {
-  constexpr int kRounds = 4;  // as what is lowered in one place is looked at anew in all
+  constexpr int kRounds = 8;  // as what is lowered in one place is looked at anew in all
   bool changed = false;
   for (int round = 0; round < kRounds && !stop(); ++round) {
     const std::vector<LightBound> exceeded = Exceeded(*model);
@@ -185,7 +184,7 @@ bool ReachHorizonToLimit(const LightLimit& limit, Objective* objective, FactorMo
 }
 
 PeakAlbedo PeakLight(const FactorModel& model, int num_threads) {
-  return model.spec().anisotropic() ? PeakAnisotropicAlbedo(model, num_threads)
+  return model.spec().anisotropic() ? PeakOfLookedAt(model, num_threads)
                                     : PeakAlbedoOf(model, num_threads);
 }
 

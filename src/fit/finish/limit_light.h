@@ -15,9 +15,9 @@
 namespace trilobe {
 
 // How much light a model of the data may reflect: 1, or what was measured where that is more
-// (AlbedoLimitsOf, AnisotropicAlbedoLimit), at each half degree of theta and each 5 degrees of
-// azimuth. One promise for any model: isotropic or not, of tables, samples or forms, and for
-// scenes, but for pruned models of those that read some directions alone.
+// (AlbedoLimitsOf, LimitByShown), at each half degree of theta and each 5 degrees of azimuth. One
+// promise for any model: isotropic or not, of tables, samples or forms, and for scenes, but for
+// pruned models of those that read some directions alone.
 class LightLimit {
  public:
   // `fit`: of the data, which says what scattered samples reflect.
@@ -28,6 +28,10 @@ class LightLimit {
   // Lowers G until the model keeps to the limit; whether anything changed. The model is of the
   // fit's kind, of any lobes and sharing. Quick; E may rise much.
   bool Lower(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const;
+
+  // The same for angles at which it exceeds the limit alone.
+  bool LowerWhereExceeded(const TableLayout& layout, const StopCheck& stop,
+                          FactorModel* model) const;
 
   // Changes as little as it takes for the model to keep to the limit; whether anything changed.
   // First G is lowered: of all angles or, where E of `data` would rise by more than 5 % and by more
@@ -45,8 +49,6 @@ class LightLimit {
 
  private:
   bool LowerCoarsely(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const;
-  bool LowerWhereExceeded(const TableLayout& layout, const StopCheck& stop,
-                          FactorModel* model) const;
   bool LowerAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
                   FactorModel* model) const;
   bool GlowsBeyond(const FactorModel& model) const;

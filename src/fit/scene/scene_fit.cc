@@ -311,8 +311,9 @@ class MaterialFitter {
       options.max_error = share * most;
       options.error = [&](const FactorModel& judged) {
         const double error = error_of(judge.CompareQuickly(judged));
-        if (!light || error > options.max_error) return error;
-        // The model will be kept from making light, which takes longer to see.
+        // The model will be kept from making light, which takes longer to see; of an anisotropic
+        // one so much longer that it is not asked for each.
+        if (!light || judged.spec().anisotropic() || error > options.max_error) return error;
         FactorModel limited = judged;
         const TableLayout all = TableLayout::Full(judged.spec());
         if (!light->Lower(all, settings_.stop, &limited)) return error;

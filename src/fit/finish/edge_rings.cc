@@ -1,0 +1,95 @@
+#include "fit/finish/edge_rings.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "fit/finish/albedos_of.h"
+#include "fit/finish/edge_course.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/channels.h"
+
+namespace trilobe {
+namespace {
+
+// The largest theta_d [rad] of what samples read of F.
+double EndOfF(const Objective& data, const FactorModel& model) {
+  const ModelSpec& spec = model.spec();
+  double last = 0;
+  for (int t = 0; t < spec.num_tables(Factor::kF); ++t) {
+    const int offset = model.TableOffset(Factor::kF, t);
+    for (int k = 0; k < spec.f_axis.size; ++k) {
+      if (data.coverage()[offset + k] > 0) last = std::max(last, spec.f_axis.Theta(k));
+    }
+  }
+  return last;
+}
+
+}  // namespace
+
+EdgeRing EdgeRingOf(const FactorModel& model, int num_threads) {
+  constexpr int kPerDegree = 2, kFirst = 65 * kPerDegree, kLast = 89 * kPerDegree + 1;
+  constexpr int kAround = 4 * kPerDegree;
+  EdgeRing ring;
+  if (model.spec().anisotropic()) return ring;
+  std::vector<double> theta_i;
+  for (int k = kFirst - kAround; k <= kLast; ++k) {
+    theta_i.push_back(DegreesToRadians(static_cast<double>(k) / kPerDegree));
+  }
+  const std::vector<Rgb> albedos = AlbedosOf(model, theta_i, num_threads);
+  const int end = static_cast<int>(albedos.size());
+  for (int k = kAround; k < end; ++k) {
+    for (int step = 1; step <= kAround && k + step < end; ++step) {
+      for (int c = 0; c < kChannels; ++c) {
+        const double before = albedos[k - step][c], here = albedos[k][c],
+                     after = albedos[k + step][c];
+        const double height =
+            std::max(here - std::max(before, after), std::min(before, after) - here);
+        if (height > ring.share) ring = {.share = height, .theta_i = theta_i[k]};
+      }
+    }
+  }
+  double largest = 0;
+  for (const Rgb& albedo : albedos) largest = std::max(largest, std::ranges::max(albedo));
+  if (largest > 0) ring.share /= largest;
+  return ring;
+}
+
+std::optional<FactorModel> WithoutEdgeRings(
+    const Objective& data, const FactorModel& model, const TableLayout& layout,
+    const LightLimit* limit, const std::function<bool(const FactorModel&)>& acceptable,
+    const StopCheck& stop) {
+  constexpr double kAsItIs = -1;
+  constexpr double kWidths[] = {0, kAsItIs, 1, 2};  // [deg]
+  constexpr double kArounds[] = {6, 10, 14};        // [deg]
+  const int num_threads = data.num_threads();
+  double lowest = EdgeRingOf(model, num_threads).share;
+  std::optional<FactorModel> even;
+  const auto consider = [&](FactorModel candidate) {
+    if (limit != nullptr) limit->LowerWhereExceeded(layout, stop, &candidate);
+    const double share = EdgeRingOf(candidate, num_threads).share;
+    if (!(share < lowest) || !acceptable(candidate)) return;
+    lowest = share;
+    even = std::move(candidate);
+  };
+  const auto is_done = [&] { return lowest <= kSeenEdgeRing || stop(); };
+  if (is_done()) return std::nullopt;
+  const double end = EndOfF(data, model);
+  for (const double width : kWidths) {
+    FactorModel candidate = model;
+    if (width != kAsItIs) {
+      ContinueTogether(end - DegreesToRadians(width), &candidate);
+      ExpandStored(layout, &candidate);
+      consider(candidate);
+    }
+    for (const double around : kArounds) {
+      if (is_done()) return even;
+      FollowCourse(around, layout, num_threads, &candidate);
+      consider(candidate);
+    }
+  }
+  return even;
+}
+
+}  // namespace trilobe
