@@ -9,6 +9,7 @@
 #include "fit/finish/edge_course.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/channels.h"
+#include "trilobe/model/axis.h"
 
 namespace trilobe {
 namespace {
@@ -62,7 +63,7 @@ std::optional<FactorModel> WithoutEdgeRings(
     const StopCheck& stop) {
   constexpr double kAsItIs = -1;
   constexpr double kWidths[] = {0, kAsItIs, 1, 2};  // [deg]
-  constexpr double kArounds[] = {6, 10, 14};        // [deg]
+  constexpr double kArounds[] = {3, 6, 10, 14};     // [deg]
   const int num_threads = data.num_threads();
   double lowest = EdgeRingOf(model, num_threads).share;
   std::optional<FactorModel> even;
@@ -74,8 +75,9 @@ std::optional<FactorModel> WithoutEdgeRings(
     even = std::move(candidate);
   };
   const auto is_done = [&] { return lowest <= kSeenEdgeRing || stop(); };
-  if (is_done()) return std::nullopt;
+  const Axis& f_axis = model.spec().f_axis;
   const double end = EndOfF(data, model);
+  if (end >= f_axis.Theta(f_axis.size - 1) || is_done()) return std::nullopt;
   for (const double width : kWidths) {
     FactorModel candidate = model;
     if (width != kAsItIs) {

@@ -26,13 +26,14 @@ inline constexpr double kSeenEdgeRing = 0.05;
 // for an anisotropic model. The same bits for any number of threads.
 EdgeRing EdgeRingOf(const FactorModel& model, int num_threads);
 
-// A model without rings at the end of the data, if this one has some. The last degrees of a
-// measurement are its worst: few samples of little weight read them, and huge values of F make up
-// for tiny ones of G. The step from there to what is beyond is seen as a bright or dark ring. So F
-// and G go on together from where F ends, from 1 or 2 degrees before, or as they are
-// (ContinueTogether), and then follow ever smoother courses (FollowCourse): the first with which no
-// ring is noticed, or the one with the lowest, of those that are `acceptable`. All keep to `limit`,
-// if there is one. Values of stored nodes change, and the others follow. Nothing if there is none.
+// A model without rings at the end of the data, if they end before the horizon and this model has
+// some. The last degrees of a measurement are its worst: few samples of little weight read them,
+// and huge values of F make up for tiny ones of G. The step from there to what is beyond is seen as
+// a bright or dark ring. So F and G go on together from where F ends, from 1 or 2 degrees before,
+// or as they are (ContinueTogether), and then follow ever smoother courses (FollowCourse): the
+// first with which no ring is noticed, or the one with the lowest, of those that are `acceptable`.
+// All keep to `limit`, if there is one. Values of stored nodes change, and the others follow.
+// Nothing if there is none.
 std::optional<FactorModel> WithoutEdgeRings(
     const Objective& data, const FactorModel& model, const TableLayout& layout,
     const LightLimit* limit, const std::function<bool(const FactorModel&)>& acceptable,

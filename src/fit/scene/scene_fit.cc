@@ -12,11 +12,11 @@
 #include "fit/choose_azimuths.h"
 #include "fit/finish/limit_light.h"
 #include "fit/fit_option.h"
-#include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "fit/scene/cached_fits.h"
 #include "fit/scene/scene_judge.h"
+#include "fit/scene/scene_pruner.h"
 #include "io/formats/source_option.h"
 #include "model/appearance/verdict.h"
 #include "model/measurement/note_symptoms.h"
@@ -243,13 +243,6 @@ class MaterialFitter {
     return fit;
   }
 
-  static PrunedModel PruneWithin(const FitProblem& problem, const FactorModel& model,
-                                 const PruneOptions& options) {
-    return model.spec().anisotropic()
-               ? PruneAnisotropic(problem.data, problem.solved(), model, options)
-               : Prune(problem.data, problem.solved(), model, options);
-  }
-
   static int StoredParameters(const FullFit& fit) {
     const ModelSpec& spec = fit.file.model.spec();
     return fit.file.layout ? fit.file.layout->num_parameters(spec) : spec.num_parameters();
@@ -272,64 +265,6 @@ class MaterialFitter {
     const UnmeasuredPrior prior(problem.data, full);
     if (!prior.empty()) problem.with_prior = prior.JoinTo(problem.data);
     return problem;
-  }
-
-  void LimitLight(const Objective& data, const std::optional<LightLimit>& light,
-                  PrunedModel* pruned) const {
-    // The full fit keeps to the limit with what it took to do so.
-    if (!light || light->Exceeded(pruned->model).empty()) return;
-    FactorModel limited = pruned->model;
-    const Objective of_pruned(data, pruned->model.spec());
-    if (!light->Keep(of_pruned, pruned->layout, settings_.stop, &limited)) return;
-    const double E = of_pruned.Value(limited);
-    pruned->decisions.push_back({.what = "G lowered",
-                                 .parameters_before = pruned->num_parameters,
-                                 .parameters_after = pruned->num_parameters,
-                                 .E_before = pruned->E,
-                                 .E_after = E,
-                                 .taken = true,
-                                 .why = "it reflected more light than fell on it"});
-    pruned->model = std::move(limited);
-    pruned->E = E;
-  }
-
-  // The search judges quickly; that the budget is kept by all that the judge looks at is seen
-  // afterwards, and the search repeated with a little less where it is not.
-  PrunedModel PruneByAppearance(const SceneJudge& judge, const Objective& data,
-                                const FitProblem& problem, const FactorModel& model,
-                                const std::optional<LightLimit>& light,
-                                PruneOptions options) const {
-    constexpr int kTries = 4;
-    constexpr double kMargin = 0.98;
-    const SceneBudget& budget = material_.budget;
-    const auto error_of = [&](const SeenError& error) { return ErrorIn(budget.unit, error); };
-    const double most = MaxError(budget);
-    const double full_error = error_of(judge.Compare(model));
-    // An error that is beyond the budget is so to a quick look, too.
-    double share = full_error > 0 ? error_of(judge.CompareQuickly(model)) / full_error : 1;
-    for (int k = 0; k < kTries; ++k) {
-      options.max_error = share * most;
-      options.error = [&](const FactorModel& judged) {
-        const double error = error_of(judge.CompareQuickly(judged));
-        // The model will be kept from making light, which takes longer to see; of an anisotropic
-        // one so much longer that it is not asked for each.
-        if (!light || judged.spec().anisotropic() || error > options.max_error) return error;
-        FactorModel limited = judged;
-        const TableLayout all = TableLayout::Full(judged.spec());
-        if (!light->Lower(all, settings_.stop, &limited)) return error;
-        return std::max(error, error_of(judge.CompareQuickly(limited)));
-      };
-      PrunedModel pruned = PruneWithin(problem, model, options);
-      LimitLight(data, light, &pruned);
-      const double error = error_of(judge.Compare(pruned.model));
-      if (error <= most || pruned.misses_budget || settings_.stop()) return pruned;
-      share *= kMargin * most / error;
-    }
-    options.error = nullptr;
-    options.max_relative_rise = 0;
-    PrunedModel pruned = PruneWithin(problem, model, options);  // what is free
-    LimitLight(data, light, &pruned);
-    return pruned;
   }
 
   AppearanceOptions Appearance() const {
@@ -358,14 +293,11 @@ class MaterialFitter {
     // small models much of what they are in those that it reads.
     std::optional<LightLimit> light;
     if (reads_all_directions()) light.emplace(objective, model);
-    PrunedModel pruned;
-    if (by_appearance) {
-      pruned = PruneByAppearance(*judge, objective, WithGuess(Guide(problem, *full), model), model,
-                                 light, prune_options);
-    } else {
-      pruned = PruneWithin(WithGuess(problem, model), model, prune_options);
-      LimitLight(objective, light, &pruned);
-    }
+    const ScenePruner pruner(objective, model, light ? &*light : nullptr);
+    PrunedModel pruned = by_appearance
+                             ? pruner.ByAppearance(WithGuess(Guide(problem, *full), model), *judge,
+                                                   material_.budget, prune_options)
+                             : pruner.ByE(WithGuess(problem, model), prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();

@@ -14,6 +14,9 @@
 #include "fit/finish/limit_light.h"
 #include "fit/prune/pruning.h"
 #include "tests/test_directory.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
+#include "trilobe/model/measurement/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -332,6 +335,32 @@ TEST(FitMaterial, MakesNoLight) {
     EXPECT_LT(fit->num_parameters, fit->full_parameters);
     EXPECT_LE(PeakLight(fit->file.model, 1).albedo, 1 + 2e-3) << synth;
   }
+}
+
+// Three incidences of a metal up to 40 degrees, whose light beyond is limited.
+TEST(FitMaterial, KeepsABudgetInEWithinTheLimitOfLight) {
+  const TestDirectory directory;
+  const BrdfTable metal = Synthesize(FindSynthMaterial("copper"), 0, 1, MerlGrid{});
+  std::string text = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+  for (const int i : {5, 20, 40}) {
+    for (int o = 0; o <= 40; o += 5) {
+      for (int phi = 0; phi < 360; phi += 60) {
+        const SphericalAngles at = {DegreesToRadians(i), 0, DegreesToRadians(o),
+                                    DegreesToRadians(phi)};
+        const int bin = metal.grid.Bin(ToHalfDiff(ToDirections(at)));
+        text += std::to_string(i) + ",0," + std::to_string(o) + "," + std::to_string(phi);
+        for (int c = 0; c < kChannels; ++c) text += "," + std::to_string(metal.Value(c, bin));
+        text += "\n";
+      }
+    }
+  }
+  SceneMaterial material = Material("metal");
+  material.source = directory.Make("metal.csv", text);
+  material.directions = AllDirections();
+  material.budget = {SceneBudget::Unit::kRelativeRise, 0};
+  const auto fit = FitMaterial(material, Settings(), 1);
+  EXPECT_LE(fit->pruned.objective, (1 + 1e-6) * fit->full.objective);
+  EXPECT_LE(PeakLight(fit->file.model, 1).albedo, 1 + 2e-3);
 }
 
 TEST(FitMaterial, ThatIsStoppedKeepsNothing) {
