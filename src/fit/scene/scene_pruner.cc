@@ -30,14 +30,15 @@ bool HasLimitOfE(const PruneOptions& options) {
 }  // namespace
 
 // The full fit keeps to the limit with what it took to do so.
-PrunedModel ScenePruner::Within(const FitProblem& problem, const PruneOptions& options) const {
+ScenePruner::Limited ScenePruner::Within(const FitProblem& problem,
+                                         const PruneOptions& options) const {
   PrunedModel pruned = full_.spec().anisotropic()
                            ? PruneAnisotropic(problem.data, problem.solved(), full_, options)
                            : Prune(problem.data, problem.solved(), full_, options);
-  if (light_ == nullptr || light_->Exceeded(pruned.model).empty()) return pruned;
+  if (light_ == nullptr || light_->Exceeded(pruned.model).empty()) return {std::move(pruned)};
   FactorModel limited = pruned.model;
   const Objective of_pruned(data_, pruned.model.spec());
-  if (!light_->Keep(of_pruned, pruned.layout, options.stop, &limited)) return pruned;
+  if (!light_->Keep(of_pruned, pruned.layout, options.stop, &limited)) return {std::move(pruned)};
   const double E = of_pruned.Value(limited);
   pruned.decisions.push_back({.what = "G lowered",
                               .parameters_before = pruned.num_parameters,
@@ -48,26 +49,27 @@ PrunedModel ScenePruner::Within(const FitProblem& problem, const PruneOptions& o
                               .why = "it reflected more light than fell on it"});
   pruned.model = std::move(limited);
   pruned.E = E;
-  return pruned;
+  return {.pruned = std::move(pruned), .was_lowered = true};
 }
 
 PrunedModel ScenePruner::ByE(const FitProblem& problem, const PruneOptions& options) const {
-  PrunedModel pruned = Within(problem, options);
-  if (!HasLimitOfE(options) || pruned.misses_budget) return pruned;
+  Limited limited = Within(problem, options);
   const double E_full = data_.Value(full_);
   const double psnr_full = ScoreModel(data_, full_).psnr_db;
-  const auto is_within = [&](const PrunedModel& model) {
-    const Objective of_model(data_, model.model.spec());
-    return model.E <= (1 + options.max_relative_rise + kRounding) * E_full &&
-           ScoreModel(of_model, model.model).psnr_db >=
+  const auto is_within = [&](const Limited& of) {
+    if (!of.was_lowered) return true;
+    const Objective of_model(data_, of.pruned.model.spec());
+    return of.pruned.E <= (1 + options.max_relative_rise + kRounding) * E_full &&
+           ScoreModel(of_model, of.pruned.model).psnr_db >=
                psnr_full - options.max_psnr_drop_db - kRounding;
   };
-  if (is_within(pruned)) return pruned;
+  if (!HasLimitOfE(options) || is_within(limited)) return std::move(limited.pruned);
   PruneOptions half = options;
   half.max_relative_rise /= 2;
   half.max_psnr_drop_db /= 2;
-  pruned = Within(problem, half);
-  return is_within(pruned) ? pruned : Within(problem, WithoutReductions(options));
+  limited = Within(problem, half);
+  if (is_within(limited)) return std::move(limited.pruned);
+  return Within(problem, WithoutReductions(options)).pruned;
 }
 
 PrunedModel ScenePruner::ByAppearance(const FitProblem& problem, const SceneJudge& judge,
@@ -93,14 +95,14 @@ PrunedModel ScenePruner::ByAppearance(const FitProblem& problem, const SceneJudg
       if (!light_->Lower(all, options.stop, &limited)) return error;
       return std::max(error, error_of(judge.CompareQuickly(limited)));
     };
-    PrunedModel pruned = Within(problem, options);
+    PrunedModel pruned = Within(problem, options).pruned;
     const double error = error_of(judge.Compare(pruned.model));
     if (error <= most || pruned.misses_budget || options.stop()) return pruned;
     share *= kMargin * most / error;
   }
   options.error = nullptr;
   options.max_relative_rise = 0;
-  return Within(problem, options);  // what is free
+  return Within(problem, options).pruned;  // what is free
 }
 
 }  // namespace trilobe

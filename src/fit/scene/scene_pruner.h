@@ -29,7 +29,11 @@ class ScenePruner {
                            const SceneBudget& budget, PruneOptions options) const;
 
  private:
-  PrunedModel Within(const FitProblem& problem, const PruneOptions& options) const;
+  struct Limited {
+    PrunedModel pruned;
+    bool was_lowered = false;  // to the limit of light
+  };
+  Limited Within(const FitProblem& problem, const PruneOptions& options) const;
 
   const Objective& data_;
   const FactorModel& full_;
