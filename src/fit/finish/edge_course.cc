@@ -69,8 +69,9 @@ std::optional<std::vector<double>> HalfLogF(double from, const FactorModel& mode
   }
   const auto on = ContinuationOf(theta, phi, kLast, Through::kLast);
   if (!on) return std::nullopt;
-  for (int k = static_cast<int>(phi.size()); k < axis.size; ++k)
+  for (int k = static_cast<int>(phi.size()); k < axis.size; ++k) {
     phi.push_back((*on)(axis.Theta(k)));
+  }
   return phi;
 }
 
