@@ -65,6 +65,9 @@ std::optional<FactorModel> WithoutEdgeRings(
   constexpr double kWidths[] = {0, kAsItIs, 1, 2};  // [deg]
   constexpr double kArounds[] = {3, 6, 10, 14};     // [deg]
   const int num_threads = data.num_threads();
+  const Axis& f_axis = model.spec().f_axis;
+  const double end = EndOfF(data, model);
+  if (end >= f_axis.Theta(f_axis.size - 1)) return std::nullopt;
   double lowest = EdgeRingOf(model, num_threads).share;
   std::optional<FactorModel> even;
   const auto consider = [&](FactorModel candidate) {
@@ -75,9 +78,7 @@ std::optional<FactorModel> WithoutEdgeRings(
     even = std::move(candidate);
   };
   const auto is_done = [&] { return lowest <= kSeenEdgeRing || stop(); };
-  const Axis& f_axis = model.spec().f_axis;
-  const double end = EndOfF(data, model);
-  if (end >= f_axis.Theta(f_axis.size - 1) || is_done()) return std::nullopt;
+  if (is_done()) return std::nullopt;
   for (const double width : kWidths) {
     FactorModel candidate = model;
     if (width != kAsItIs) {

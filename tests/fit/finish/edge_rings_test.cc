@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "fit/finish/edge_course.h"
+#include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/measurement/synth.h"
-#include "trilobe/solvers/starts/initial_model.h"
-#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -24,25 +23,20 @@ constexpr double kEnd = DegreesToRadians(75);
 const StopCheck kGoOn = [] { return false; };
 const auto kAny = [](const FactorModel& /*model*/) { return true; };
 
-struct Fitted {
-  Objective objective;
-  FactorModel model;
-};
-
 // To what was measured within 75 degrees; without the rings that the solver leaves.
-Fitted FitModel() {
+Solved FitModel() {
   BrdfTable table = Synthesize(FindSynthMaterial("copper"), 0.02, 1, kGrid);
   LimitAngles(kEnd, Unmeasured::kBeyondMaxAngle, &table);
-  Objective objective = MakeObjective(table, ModelSpec::SharedFactors(3, kGrid), "appearance");
-  FactorModel model = InitialModels().front().make(objective, 1);
-  MakeSolver("varpro")->Solve(objective, {.max_iterations = 10, .diagnose = false}, &model);
+  Solved solved =
+      SolveFromFirstStart(MakeObjective(table, ModelSpec::SharedFactors(3, kGrid), "appearance"));
+  auto& [objective, model] = solved;
   const TableLayout layout = TableLayout::Full(model.spec());
   model = WithoutEdgeRings(objective, model, layout, nullptr, kAny, kGoOn).value_or(model);
-  return {std::move(objective), std::move(model)};
+  return solved;
 }
 
-const Fitted& FittedModel() {
-  static const Fitted fitted = FitModel();
+const Solved& FittedModel() {
+  static const Solved fitted = FitModel();
   return fitted;
 }
 
@@ -97,7 +91,7 @@ TEST(EdgeRing, StaysIfThereIsNoneOrNoModelIsAcceptable) {
 }
 
 TEST(EdgeRing, GoesWithinTheLimitOfLight) {
-  const Fitted& fitted = FittedModel();
+  const Solved& fitted = FittedModel();
   const LightLimit limit(fitted.objective, fitted.model);
   const FactorModel uneven = WithRing(79.5, 30);
   ASSERT_FALSE(limit.Exceeded(uneven).empty());
@@ -134,7 +128,7 @@ TEST(ContinueTogether, KeepsWhatFactorsReflectTogether) {
 }
 
 TEST(FollowCourse, HardlyChangesWhatIsEven) {
-  const Fitted& fitted = FittedModel();
+  const Solved& fitted = FittedModel();
   FactorModel followed = fitted.model;
   FollowCourse(6, TableLayout::Full(followed.spec()), 2, &followed);
   const double rise = fitted.objective.Value(followed) - fitted.objective.Value(fitted.model);

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/starts/initial_model.h"
 #include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe {
@@ -23,6 +25,18 @@ inline FactorModel Fitted(const Objective& objective, int max_iterations) {
   MakeSolver("varpro")->Solve(objective, {.max_iterations = max_iterations, .diagnose = false},
                               &model);
   return model;
+}
+
+// An objective, and the model that a solver finds from the first start.
+struct Solved {
+  Objective objective;
+  FactorModel model;
+};
+
+inline Solved SolveFromFirstStart(Objective objective) {
+  FactorModel model = InitialModels().front().make(objective, 1);
+  MakeSolver("varpro")->Solve(objective, {.max_iterations = 10, .diagnose = false}, &model);
+  return {std::move(objective), std::move(model)};
 }
 
 }  // namespace trilobe

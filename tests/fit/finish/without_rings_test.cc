@@ -4,13 +4,11 @@
 
 #include <cmath>
 #include <optional>
-#include <utility>
 
+#include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/measurement/synth.h"
-#include "trilobe/solvers/starts/initial_model.h"
-#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -20,21 +18,10 @@ constexpr MerlGrid kGrid{.theta_h = 20, .theta_d = 30, .phi_d = 12};
 const StopCheck kGoOn = [] { return false; };
 const auto kAny = [](const FactorModel& /*model*/) { return true; };
 
-struct Fitted {
-  Objective objective;
-  FactorModel model;
-};
-
-Fitted FitModel() {
-  Objective objective = MakeObjective(Synthesize(FindSynthMaterial("copper"), 0.1, 1, kGrid),
-                                      ModelSpec::SharedFactors(3, kGrid), "appearance");
-  FactorModel model = InitialModels().front().make(objective, 1);
-  MakeSolver("varpro")->Solve(objective, {.max_iterations = 10, .diagnose = false}, &model);
-  return {std::move(objective), std::move(model)};
-}
-
-const Fitted& FittedModel() {
-  static const Fitted fitted = FitModel();
+const Solved& FittedModel() {
+  static const Solved fitted =
+      SolveFromFirstStart(MakeObjective(Synthesize(FindSynthMaterial("copper"), 0.1, 1, kGrid),
+                                        ModelSpec::SharedFactors(3, kGrid), "appearance"));
   return fitted;
 }
 
@@ -48,7 +35,7 @@ FactorModel WithRing(FactorModel model) {
 }
 
 TEST(WithoutRings, IsSmoother) {
-  const Fitted& fitted = FittedModel();
+  const Solved& fitted = FittedModel();
   ASSERT_FALSE(HasRings(fitted.model, 2));
   const FactorModel uneven = WithRing(fitted.model);
   ASSERT_TRUE(HasRings(uneven, 2));
@@ -59,7 +46,7 @@ TEST(WithoutRings, IsSmoother) {
 }
 
 TEST(WithoutRings, IsNothingForAnEvenModelOrIfNoneIsAcceptable) {
-  const Fitted& fitted = FittedModel();
+  const Solved& fitted = FittedModel();
   EXPECT_FALSE(WithoutRings(fitted.objective, fitted.model, kAny, kGoOn));
   const FactorModel uneven = WithRing(fitted.model);
   const auto none = [](const FactorModel& /*model*/) { return false; };
@@ -68,7 +55,7 @@ TEST(WithoutRings, IsNothingForAnEvenModelOrIfNoneIsAcceptable) {
 }
 
 TEST(WithoutRings, AsksOnlyForEvenModels) {
-  const Fitted& fitted = FittedModel();
+  const Solved& fitted = FittedModel();
   const auto is_even = [](const FactorModel& model) {
     EXPECT_FALSE(HasRings(model, 1));
     return true;
