@@ -11,6 +11,7 @@
 #include "fit/finish/edge_rings.h"
 #include "fit/finish/limit_light.h"
 #include "fit/finish/reflectance.h"
+#include "fit/finish/retro_rim.h"
 #include "fit/finish/smoothest.h"
 #include "fit/finish/without_rings.h"
 #include "fit/held_out.h"
@@ -180,22 +181,45 @@ void EvenOut(const Objective& solved, const StopCheck& stop, SphereScores* score
   if (even) fit->model = *std::move(even);
 }
 
-// Removes rings at the end of the data, if the sphere hardly suffers or, without one, E.
-void EvenOutEdge(const FinishOptions& options, SphereScores* scores, FinishedFit* fit) {
+// Mends what the end of the data does to a model: a better one, of those that are acceptable.
+using Acceptable = std::function<bool(const FactorModel&)>;
+using EdgeMend = std::function<std::optional<FactorModel>(
+    const Objective& data, const TableLayout& layout, const Acceptable& acceptable)>;
+
+// Does so if the sphere hardly suffers or, without one, E.
+void MendEdge(const EdgeMend& mend, SphereScores* scores, FinishedFit* fit) {
   constexpr double kMayRise = 0.02, kMayLoseBeyond = 3;
   const Objective data(fit->objective.data(), fit->model.spec());
   std::optional<NoHarm> no_harm;
-  const auto is_harmless = [&](const FactorModel& even) {
-    if (scores == nullptr) return data.Value(even) <= (1 + kMayRise) * data.Value(fit->model);
+  const auto is_harmless = [&](const FactorModel& mended) {
+    if (scores == nullptr) return data.Value(mended) <= (1 + kMayRise) * data.Value(fit->model);
     if (!no_harm) no_harm.emplace(data, fit->model, scores, kMayLoseForRings, kMayLoseBeyond);
-    return (*no_harm)(even);
+    return (*no_harm)(mended);
   };
   const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
-  std::optional<LightLimit> limit;
-  if (options.limit_albedo) limit.emplace(data, fit->model);
-  std::optional<FactorModel> even = WithoutEdgeRings(
-      data, fit->model, layout, limit ? &*limit : nullptr, is_harmless, options.stop);
-  if (even) fit->model = *std::move(even);
+  std::optional<FactorModel> mended = mend(data, layout, is_harmless);
+  if (mended) fit->model = *std::move(mended);
+}
+
+// Removes rings at the end of the data.
+void EvenOutEdge(const FinishOptions& options, SphereScores* scores, FinishedFit* fit) {
+  const auto mend = [&](const Objective& data, const TableLayout& layout,
+                        const Acceptable& acceptable) {
+    std::optional<LightLimit> limit;
+    if (options.limit_albedo) limit.emplace(data, fit->model);
+    return WithoutEdgeRings(data, fit->model, layout, limit ? &*limit : nullptr, acceptable,
+                            options.stop);
+  };
+  MendEdge(mend, scores, fit);
+}
+
+// Removes a bright rim under light from the eye.
+void DimRetroRim(const FinishOptions& options, SphereScores* scores, FinishedFit* fit) {
+  const auto mend = [&](const Objective& data, const TableLayout& layout,
+                        const Acceptable& acceptable) {
+    return WithoutRetroRim(data, fit->model, layout, acceptable, options.stop);
+  };
+  MendEdge(mend, scores, fit);
 }
 
 // One of those that follow a solver, in this order, whatever was measured: a table or samples, with
@@ -206,6 +230,11 @@ struct FinishStep {
   std::function<void()> change;
 };
 constexpr const char* kCanonicalForm = nullptr;  // changes no value, and is not noted
+
+std::string StageOf(std::string step) {
+  std::ranges::replace(step, '_', ' ');
+  return "finishing: " + step;
+}
 
 // Takes a step, and notes what it does to E of the data and how long it takes.
 void Take(const FinishStep& step, FinishedFit* fit) {
@@ -287,6 +316,9 @@ FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorMode
   const auto is_full = [&] {
     return !fit.layout || *fit.layout == TableLayout::Full(fit.model.spec());
   };
+  const auto mends_edge = [&] {
+    return options.smoothness > 0 && !fit.model.spec().anisotropic() && !options.stop();
+  };
   const FinishStep steps[] = {
       {"robust", [&] { return options.robust > 0; },
        [&] { solved = FitRobustly(solved, options, &fit.model); }},
@@ -326,12 +358,13 @@ FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorMode
        [&] { Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model); }},
       {"energy", [&] { return options.limit_albedo && !options.stop(); },
        [&] { LimitLightOf(&fit, options.stop); }},
-      {"edge_rings",
-       [&] { return options.smoothness > 0 && !fit.model.spec().anisotropic() && !options.stop(); },
-       [&] { EvenOutEdge(options, scores, &fit); }},
+      {"edge_rings", mends_edge, [&] { EvenOutEdge(options, scores, &fit); }},
+      {"retro_rim", mends_edge, [&] { DimRetroRim(options, scores, &fit); }},
   };
   for (const FinishStep& step : steps) {
-    if (step.applies()) Take(step, &fit);
+    if (!step.applies()) continue;
+    if (step.name != kCanonicalForm) options.on_stage(StageOf(step.name));
+    Take(step, &fit);
   }
   return fit;
 }

@@ -32,6 +32,8 @@ struct FinishOptions {
   bool match_reflectance = true;  // MatchReflectance, if scores hardly suffer
   bool limit_albedo = true;       // no more light than falls on it (LightLimit)
   AppearanceOptions appearance;
+  // Called as a step begins: "finishing: edge rings".
+  std::function<void(const std::string&)> on_stage = [](const std::string&) {};
   StopCheck stop = {};
 };
 
@@ -40,7 +42,7 @@ struct FinishingStep {
   // In this order: "robust", "between_samples" (CorrectOvershoot), "data_edge"
   // (TieEntriesAtDataEdge), "form" (ChooseModel), "reflected_light" (MatchReflectance),
   // "smoothness" (Smoothest), "evenness" (WithoutRings), "energy" (LightLimit), "edge_rings"
-  // (WithoutEdgeRings).
+  // (WithoutEdgeRings), "retro_rim" (WithoutRetroRim).
   std::string name;
   double objective_before = 0, objective_after = 0;  // E of the data
   double seconds = 0;
