@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fit/finish/albedo_limit.h"
+#include "fit/finish/shown_light.h"
 #include "model/appearance/node_appearance.h"
 #include "model/objective/beyond_data.h"
 #include "trilobe/core/base/angles.h"
@@ -97,6 +98,13 @@ BrdfSamples EveryOther(const BrdfSamples& samples, const std::vector<int>& incid
   return Selected(samples, kept);
 }
 
+// How far fits to halves are off, over what the fit to all is off by. Where all samples are of the
+// highlight, both halves guess the rest alike; where a half is one incidence, it knows much less.
+double HalvesOff(const BrdfSamples& samples, const std::vector<int>& incidences) {
+  if (std::ranges::max(incidences) == 1) return 2.25;
+  return ShowsMoreThanHighlight(samples) ? 1.5 : 1;
+}
+
 }  // namespace
 
 std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const FactorModel& model,
@@ -143,8 +151,8 @@ std::optional<WholeSphere> EstimateWholeOfSamples(const BrdfSamples& samples,
   }
   const std::vector<int> incidences = IncidencesOf(samples);
   if (std::ranges::max(incidences) == 0) return std::nullopt;
-  constexpr double kHalvesOff = 1.5;  // over what all samples are off by
-  double squares = 0, errors = 0;     // of the colours, of the encoded values; means of the halves
+  const double halves_off = HalvesOff(samples, incidences);
+  double squares = 0, errors = 0;  // of the colours, of the encoded values; means of the halves
   for (const int which : {0, 1}) {
     const FactorModel half = fit_to(EveryOther(samples, incidences, which));
     const SphereError guess = CompareWhole(model, half, options);
@@ -152,8 +160,8 @@ std::optional<WholeSphere> EstimateWholeOfSamples(const BrdfSamples& samples,
     errors += std::pow(10, -guess.psnr_db / 10) / 2;
   }
   return WholeSphere{
-      .mean_delta_e = std::hypot(seen.mean_delta_e, std::sqrt(squares) / kHalvesOff),
-      .psnr_db = SumInDecibels(seen.psnr_db, -10 * std::log10(errors / std::pow(kHalvesOff, 2)))};
+      .mean_delta_e = std::hypot(seen.mean_delta_e, std::sqrt(squares) / halves_off),
+      .psnr_db = SumInDecibels(seen.psnr_db, -10 * std::log10(errors / std::pow(halves_off, 2)))};
 }
 
 }  // namespace trilobe

@@ -81,17 +81,19 @@ std::vector<PolarAngles> Incidences(const BrdfSamples& samples, int degrees) {
 // Light of a diffuse base as dark as the darkest sample; 0 where samples of a highlight alone do
 // not tell one.
 double DiffuseLight(const BrdfSamples& samples) {
-  constexpr double kAway = DegreesToRadians(20);
-  if (std::ranges::none_of(samples.angles,
-                           [](const HalfDiffAngles& at) { return at.theta_h > kAway; })) {
-    return 0;
-  }
+  if (!ShowsMoreThanHighlight(samples)) return 0;
   double darkest = std::numeric_limits<double>::infinity();
   for (const Rgb& rho : samples.rho) darkest = std::min(darkest, std::ranges::max(rho));
   return kPi * darkest;
 }
 
 }  // namespace
+
+bool ShowsMoreThanHighlight(const BrdfSamples& samples) {
+  constexpr double kAway = DegreesToRadians(20);
+  return std::ranges::any_of(samples.angles,
+                             [](const HalfDiffAngles& at) { return at.theta_h > kAway; });
+}
 
 double ShownLight(const BrdfSamples& samples, const FactorModel& model, int num_threads) {
   constexpr int kAzimuths = 36;

@@ -6,6 +6,9 @@
 
 namespace trilobe {
 
+// Whether some half vectors are farther than 20 degrees from the normal, which tell a diffuse term.
+bool ShowsMoreThanHighlight(const BrdfSamples& samples);
+
 // Light that scattered samples themselves show to be reflected, in their units: the largest channel
 // of
 //   integral of rho(wi, wo) cos theta_o over measured wo,
