@@ -182,6 +182,8 @@ FitSettings SettingsOf(const std::string& solver, const Values& values, int star
   // Studies are of solvers, without the steps after them. With --model=auto, the choice of a form
   // is the result.
   if (IsDefault("raw") && !ChoosesModel()) SetFlag("raw", "true");
+  // All solvers fit the same form.
+  if (IsDefault("nodes") && !IsOn("raw") && !ChoosesModel()) SetFlag("nodes", "given");
   if (start > 1) {
     SetFlag("init", "random");
     SetFlag("seed", std::to_string(FLAGS_seed + start - 1));

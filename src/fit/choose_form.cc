@@ -41,7 +41,8 @@ void CheckMayChooseForms(const FitOptions& options) {
     throw Error(ErrorKind::kConflict, "--model=auto has starts of its own; leave one out")
         .About("start_model");
   }
-  if (options.form.nodes_by_held_out || options.form.d_nodes || options.form.g_nodes) {
+  if (options.form.nodes == FormOptions::NodeRule::kHeldOut || options.form.d_nodes ||
+      options.form.g_nodes) {
     throw Error(ErrorKind::kConflict,
                 "--model=auto chooses the nodes; leave out --nodes, --d_nodes and --g_nodes")
         .About("nodes");

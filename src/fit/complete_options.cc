@@ -12,6 +12,7 @@ FitOptions CompleteOptions(FitOptions options) {
   };
   complete(&FitOptions::solver_options);
   complete(&FitOptions::on_begin);
+  complete(&FitOptions::on_stage);
   complete(&FitOptions::on_progress);
   complete(&FitOptions::on_start);
   complete(&FitOptions::on_iteration);

@@ -15,6 +15,7 @@
 #include "fit/guess_error.h"
 #include "fit/held_out.h"
 #include "fit/held_out_fit.h"
+#include "fit/prior_of.h"
 #include "fit/samples_to_fit.h"
 #include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
@@ -30,33 +31,6 @@
 
 namespace trilobe {
 namespace {
-
-double PriorWeight(const Measurement& measurement, const FitOptions& options) {
-  if (measurement.table) {
-    if (options.prior) {
-      throw ErrorIn(ErrorKind::kUnsupported, measurement.source,
-                    "--prior is for scattered samples, and a " + measurement.kind + " is a table")
-          .About("prior");
-    }
-    return 0;
-  }
-  return options.prior.value_or(options.form.kind == FormOptions::Kind::kAnisotropic ? 0 : 1);
-}
-
-std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitOptions& options,
-                                      const Objective& data) {
-  const double weight = PriorWeight(measurement, options);
-  if (!(weight > 0)) return std::nullopt;
-  SyntheticPriorOptions prior{
-      .weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop};
-  // A model that cannot follow the data had better follow the prior as it is.
-  if (data.spec().anisotropic()) prior.grid = GridOf(measurement);
-  return SyntheticPrior(data, prior);
-}
-
-Objective JoinPrior(const Objective& data, const std::optional<SyntheticPrior>& prior) {
-  return prior ? prior->Join(data) : data;
-}
 
 FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
                const Objective& objective, const SolverSummary& summary) {
@@ -118,7 +92,7 @@ class Fitting {
     if (options_.bands) CheckBands(measurement_.source, measurement_.samples, spec);
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
-    if (options_.bands) WithSpectra(fit.objective);  // its error
+    if (options_.bands) WithSpectra(fit.objective, measurement_);  // its error
     fit.raw = options_.raw;
     fit.seconds.prepare = stopwatch_.Lap();
     fit.interrupted = options_.stop();
@@ -128,7 +102,14 @@ class Fitting {
     fit.interrupted = options_.stop();
     if (fit.interrupted) return fit;
     options_.on_begin();
-    if (!nodes.empty()) ChooseAmong(nodes, &fit, &model);
+    if (!nodes.empty()) {
+      options_.on_stage("choosing nodes");
+      fit.nodes = ChooseAmong(nodes, fit.objective);
+      fit.objective = Objective(fit.objective, fit.nodes->model.spec());
+      // The chosen model is better than a starting point that no solver will improve.
+      model = options_.stop() ? fit.nodes->model : Start(fit.objective);
+      fit.seconds.nodes = stopwatch_.Lap();
+    }
     Solve(&fit, &model);
     return fit;
   }
@@ -161,26 +142,49 @@ class Fitting {
     isotropic_budget_ = 0;
   }
 
-  void ChooseAmong(const std::vector<FormSpec>& nodes, FitResult* fit, FactorModel* model) {
-    NodeChoiceOptions choice{.seed = options_.seed,
-                             .prior = PriorWeight(measurement_, options_),
-                             .grid = GridOf(measurement_),
-                             .on_iteration =
-                                 [this](const IterationRecord& record, const FactorModel&) {
-                                   options_.on_progress(record);
-                                   return true;
-                                 },
-                             .stop = options_.stop};
-    fit->nodes = ChooseNodes(fit->objective, nodes, choice);
-    fit->objective = Objective(fit->objective, fit->nodes->model.spec());
-    *model = options_.stop() ? fit->nodes->model  // better than a starting point that no solver
-                                                  // will improve
-                             : Start(fit->objective);
-    fit->seconds.nodes = stopwatch_.Lap();
+  NodeChoice ChooseAmong(const std::vector<FormSpec>& nodes, const Objective& data,
+                         double worthwhile = NodeChoiceOptions().worthwhile) const {
+    return ChooseNodes(data, nodes,
+                       {.seed = options_.seed,
+                        .prior = PriorWeight(measurement_, options_),
+                        .grid = GridOf(measurement_),
+                        .worthwhile = worthwhile,
+                        .on_iteration =
+                            [this](const IterationRecord& record, const FactorModel&) {
+                              options_.on_progress(record);
+                              return true;
+                            },
+                        .stop = options_.stop});
+  }
+
+  // Where the default nodes leave an error that is seen, finer ones are tried. They are taken while
+  // E of directions held out falls by a seventh.
+  void Refine(const std::optional<SyntheticPrior>& prior, SolvedForm* form, FitResult* fit) {
+    constexpr double kSeen = 0.01;  // E over a black model's
+    constexpr double kWorthwhile = 6.0 / 7;
+    if (options_.raw || options_.start_model || !forms_.empty() || !IsDefaultSolver()) return;
+    const std::vector<FormSpec> nodes = FinerNodes(measurement_, options_.form, form->data.spec());
+    if (nodes.empty() || options_.stop()) return;
+    if (!(form->data.Value(form->model) > kSeen * form->data.MeasuredEnergy())) return;
+    options_.on_stage("trying finer nodes");
+    NodeChoice choice = ChooseAmong(nodes, form->data, kWorthwhile);
+    fit->seconds.nodes += stopwatch_.Lap();
+    if (options_.stop()) return;
+    fit->nodes = std::move(choice);
+    const ModelSpec& spec = fit->nodes->model.spec();
+    if (spec == form->data.spec()) return;
+    const Objective data(form->data, spec);
+    options_.on_stage("fitting on finer nodes");
+    SolvedForm finer = SolveForm(data, prior, Start(data), /*is_first=*/false);
+    fit->seconds.solve += stopwatch_.Lap();
+    if (options_.stop()) return;  // the coarser one is whole
+    *form = std::move(finer);
+    ReportForm(*form, fit);
   }
 
   void Solve(FitResult* fit, FactorModel* model) {
     const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, fit->objective);
+    options_.on_stage("fitting");
     SolvedForm form = SolveForm(fit->objective, prior, std::move(*model), /*is_first=*/true);
     fit->seconds.solve = stopwatch_.Lap();
     ReportForm(form, fit);
@@ -191,7 +195,9 @@ class Fitting {
       fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
       options_.on_model(*fit);
     }
+    Refine(prior, &form, fit);
     if (forms_.size() > 1 && !options_.stop()) {
+      options_.on_stage("choosing the form");
       Choose(prior, &form, fit);
       ReportForm(form, fit);
     }
@@ -199,39 +205,24 @@ class Fitting {
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.bands && !options_.stop()) {
-      fit->bands = FitBands(WithSpectra(fit->objective), fit->model(), options_.stop);
+      const Objective spectra = WithSpectra(fit->objective, measurement_);
+      fit->bands = FitBands(spectra, fit->model(), options_.stop);
       fit->seconds.bands = stopwatch_.Lap();
     }
-    if (options_.compare) Compare(fit);
+    if (options_.compare) {
+      options_.on_stage("comparing with the measurement");
+      Compare(fit);
+    }
     fit->seconds.score = stopwatch_.Lap();
     if (options_.held_out && !options_.stop()) {
       const ModelSpec& spec = fit->model().spec();
+      options_.on_stage("fitting without what is held out");
       fit->held_out = FitWithoutHeldOut(measurement_, options_, spec, [&](const auto& part) {
         return ModelOf(Fitting(measurement_, part).Run());
       });
       fit->seconds.held_out = stopwatch_.Lap();
     }
     fit->interrupted = options_.stop();
-  }
-
-  // Objective of the wavelengths: all samples or, for a table, those that have spectra and are
-  // fitted with the values that they were read with.
-  Objective WithSpectra(const Objective& data) const {
-    if (!measurement_.table) return data;
-    const BrdfSamples &all = data.samples(), &some = measurement_.samples;
-    std::vector<int> kept;
-    for (int j = 0; j < some.size(); ++j) {
-      const auto found = std::ranges::lower_bound(all.bins, some.bins[j]);
-      if (found == all.bins.end() || *found != some.bins[j]) continue;
-      if (all.rho[found - all.bins.begin()] == some.rho[j]) kept.push_back(j);
-    }
-    if (kept.empty()) {
-      throw ErrorIn(ErrorKind::kData, measurement_.source,
-                    "no sample that is fitted has a spectrum with its value; leave out what "
-                    "changes values")
-          .About("spectra");
-    }
-    return {Selected(some, kept), data.spec(), data.weighting(), data.num_threads()};
   }
 
   void ReportForm(const SolvedForm& form, FitResult* fit) const {
@@ -312,17 +303,16 @@ class Fitting {
               FitResult* fit) const {
     // One that was stopped early gains more by going on.
     const bool has_ended = HasEnded(fit->summary.stop_reason);
-    // Steps of another solver would hide what the one that was asked for has found.
-    const bool default_solver = options_.solver == Solvers().front().name;
     FinishOptions finish{.smoothness = has_ended ? options_.smoothness : 0,
                          .robust = options_.robust,
                          .max_parameters = isotropic_budget_,
                          .seed = options_.seed,
                          .prior = options_.raw ? nullptr : prior,
-                         .tie_data_edge = default_solver && !options_.raw,
+                         .tie_data_edge = IsDefaultSolver() && !options_.raw,
                          .match_reflectance = options_.match_reflectance && has_ended,
                          .limit_albedo = options_.limit_albedo && !options_.raw,
                          .appearance = Appearance(),
+                         .on_stage = options_.on_stage,
                          .stop = options_.stop};
     const bool has_prior = solved.has_prior();
     FinishedFit finished = FinishFit(std::move(solved), table_, std::move(model), finish);
@@ -349,6 +339,9 @@ class Fitting {
     fit->score = ScoreModel(fit->objective, fit->model());
     fit->file.fit.objective = fit->score.objective;
   }
+
+  // Steps and forms of another solver would hide what the one that was asked for has found.
+  bool IsDefaultSolver() const { return options_.solver == Solvers().front().name; }
 
   AppearanceOptions Appearance() const {
     AppearanceOptions appearance = options_.appearance;

@@ -168,6 +168,24 @@ void CheckBands(const std::string& source, const BrdfSamples& samples, const Mod
   }
 }
 
+Objective WithSpectra(const Objective& data, const Measurement& measurement) {
+  if (!measurement.table) return data;
+  const BrdfSamples &all = data.samples(), &some = measurement.samples;
+  std::vector<int> kept;
+  for (int j = 0; j < some.size(); ++j) {
+    const auto found = std::ranges::lower_bound(all.bins, some.bins[j]);
+    if (found == all.bins.end() || *found != some.bins[j]) continue;
+    if (all.rho[found - all.bins.begin()] == some.rho[j]) kept.push_back(j);
+  }
+  if (kept.empty()) {
+    throw ErrorIn(ErrorKind::kData, measurement.source,
+                  "no sample that is fitted has a spectrum with its value; leave out what changes "
+                  "values")
+        .About("spectra");
+  }
+  return {Selected(some, kept), data.spec(), data.weighting(), data.num_threads()};
+}
+
 BandsFit FitBands(const Objective& objective, const FactorModel& rgb, const StopCheck& stop) {
   const Objective& data = objective.data();  // a prior has no spectra
   const BrdfSamples& samples = data.samples();

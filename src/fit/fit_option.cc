@@ -87,9 +87,18 @@ void SetFBins(std::string_view text, FitOptions* options) {
   options->form.f_bins = bins == 0 ? std::nullopt : std::optional(bins);
 }
 
+using NodeRule = FormOptions::NodeRule;
+constexpr std::pair<NodeRule, const char*> kNodeRules[] = {{NodeRule::kFinerWhereSeen, "auto"},
+                                                           {NodeRule::kGiven, "given"},
+                                                           {NodeRule::kHeldOut, "held_out"}};
+
 void SetNodes(std::string_view text, FitOptions* options) {
-  if (text != "given" && text != "held_out") FailOptionText("nodes", text, "given or held_out");
-  options->form.nodes_by_held_out = text == "held_out";
+  for (const auto& [rule, name] : kNodeRules) {
+    if (text != name) continue;
+    options->form.nodes = rule;
+    return;
+  }
+  FailOptionText("nodes", text, "auto, given or held_out");
 }
 
 // The rows of model and lobes stand before, and have been set.
@@ -189,15 +198,18 @@ std::vector<FitOption> MakeFitOptions() {
        .set = SetGNodes,
        .get = [](const Options& of) { return TextOfNodes(of.form.g_nodes); }},
       {.name = "nodes",
-       .help = "choice of the nodes of an anisotropic model. given: by --d_nodes and --g_nodes, or "
-               "by default; held_out: those of D and G, from coarse to fine, with the least error "
-               "on directions that are held out (docs/forms.md)",
-       .default_value = "given",
+       .help =
+           "choice of the nodes of an anisotropic model. given: by --d_nodes and --g_nodes, or "
+           "by default; auto: the same, and finer than the default where an error is seen; "
+           "held_out: those of D and G, from coarse to fine, with the least error on directions "
+           "that are held out (docs/forms.md)",
+       .default_value = "auto",
        .of_form = true,
        .set = SetNodes,
        .get =
            [](const Options& of) {
-             return std::string(of.form.nodes_by_held_out ? "held_out" : "given");
+             const auto rule_of = [](const auto& rule) { return rule.first; };
+             return std::string(std::ranges::find(kNodeRules, of.form.nodes, rule_of)->second);
            }},
       Option<"solver", &Options::solver>({.help = "one of the solvers above", .of_scenes = true}),
       Option<"init", &Options::init>(
@@ -288,7 +300,7 @@ void CheckFitOptions(const FitOptions& options) {
     CheckForm(options.form);
   }
   for (const char* const nodes : {"d_nodes", "g_nodes"}) {
-    if (options.form.nodes_by_held_out && IsGiven(nodes, options)) {
+    if (options.form.nodes == NodeRule::kHeldOut && IsGiven(nodes, options)) {
       throw Error(ErrorKind::kConflict,
                   "--nodes=held_out chooses the nodes; leave out --" + std::string(nodes))
           .About(nodes);

@@ -1,5 +1,6 @@
 #include "trilobe/fit/form.h"
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 
@@ -28,11 +29,11 @@ ModelSpec AnisotropicSpec(const FormOptions& options, const HemisphereGrid& data
 }
 
 void CheckNothingAnisotropic(const FormOptions& options) {
-  const char* const given = options.d_nodes             ? "d_nodes"
-                            : options.f_bins            ? "f_bins"
-                            : options.g_nodes           ? "g_nodes"
-                            : options.nodes_by_held_out ? "nodes"
-                                                        : nullptr;
+  const char* const given = options.d_nodes                                    ? "d_nodes"
+                            : options.f_bins                                   ? "f_bins"
+                            : options.g_nodes                                  ? "g_nodes"
+                            : options.nodes == FormOptions::NodeRule::kHeldOut ? "nodes"
+                                                                               : nullptr;
   if (given != nullptr) {
     throw Error(ErrorKind::kUnsupported, "--" + std::string(given) + " is for anisotropic models")
         .About(given);
@@ -128,7 +129,7 @@ std::string ModelName(const ModelSpec& spec) {
 
 std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptions& options,
                                  const ModelSpec& spec) {
-  if (!options.nodes_by_held_out) return {};
+  if (options.nodes != FormOptions::NodeRule::kHeldOut) return {};
   if (!spec.anisotropic()) {
     throw ErrorIn(ErrorKind::kConflict, measurement.source,
                   "--nodes=held_out is for anisotropic models, and this is "
@@ -137,6 +138,20 @@ std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptio
   }
   const HemisphereGrid data = GridOf(measurement).value_or(HemisphereGrid());
   return NodeLadder(spec, data.thetas, data.phis);
+}
+
+std::vector<FormSpec> FinerNodes(const Measurement& measurement, const FormOptions& options,
+                                 const ModelSpec& spec) {
+  const bool given = options.d_nodes || options.f_bins || options.g_nodes ||
+                     options.nodes != FormOptions::NodeRule::kFinerWhereSeen ||
+                     options.kind != FormOptions::Kind::kShared;
+  const std::optional<HemisphereGrid> data =
+      given || !spec.anisotropic() ? std::nullopt : GridOf(measurement);
+  if (!data) return {};
+  std::vector<FormSpec> ladder = NodeLadder(spec, data->thetas, data->phis);
+  const auto same = std::ranges::find(ladder, spec, &FormSpec::spec);
+  ladder.erase(ladder.begin(), same);
+  return ladder;
 }
 
 }  // namespace trilobe

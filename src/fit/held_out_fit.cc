@@ -24,6 +24,7 @@ std::optional<HeldOutError> FitWithoutHeldOut(
   of_part.select = [&kept](const BrdfSamples& /*all*/) { return BrdfSamples(kept); };
   of_part.compare = of_part.bands = false;
   of_part.on_begin = nullptr;
+  of_part.on_stage = nullptr;
   of_part.on_progress = nullptr;
   of_part.on_start = nullptr;
   of_part.on_iteration = nullptr;

@@ -11,6 +11,7 @@
 #include "tests/error_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
+#include "trilobe/solvers/starts/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -99,6 +100,30 @@ TEST(Fit, HoldsNothingOutOfTooFewSamples) {
   options.held_out = 1;
   options.select = [](const BrdfSamples& all) { return Selected(all, {5, 6}); };
   EXPECT_FALSE(Fit(measured, options).held_out);
+}
+
+TEST(Fit, HasFinerNodesWhereTheDefaultLeavesAnError) {
+  FitOptions options = Quick();
+  options.solver = Solvers().front().name;
+  options.form.lobes = 1;
+  options.compare = false;
+  const Measurement satin = LoadMeasurement("synth:charmeuse@6x24");
+  const FitResult fit = Fit(satin, options);
+  ASSERT_TRUE(fit.nodes);
+  EXPECT_GT(fit.nodes->chosen, 0);
+  EXPECT_EQ(fit.model().spec(), fit.nodes->model.spec());
+  EXPECT_GT(fit.model().spec().num_parameters(), fit.nodes->tried.front().num_parameters);
+  // These are the nodes that are asked for.
+  options.form.d_nodes = fit.nodes->model.spec().d_axis;
+  options.form.g_nodes = fit.nodes->model.spec().g_axis;
+  EXPECT_EQ(Parameters(fit), Parameters(Fit(satin, options)));
+  EXPECT_FALSE(Fit(satin, options).nodes);
+  // Raw fits and those of little error have the default.
+  options.form = {.lobes = 1};
+  options.raw = true;
+  EXPECT_FALSE(Fit(satin, options).nodes);
+  options.raw = false;
+  EXPECT_FALSE(Fit(LoadMeasurement("synth:enamelled_metal@6x24"), options).nodes);
 }
 
 // The solver has converged, so that smoothing can only raise E.

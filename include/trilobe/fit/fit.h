@@ -40,7 +40,7 @@ struct FitResult {
   ModelFile file = {};
   SolverSummary summary = {};
   std::optional<AzimuthChoice> azimuths = {};  // for samples whose azimuths are given
-  std::optional<NodeChoice> nodes = {};        // with FormOptions::nodes_by_held_out
+  std::optional<NodeChoice> nodes = {};        // where finer ones were tried
   // Samples of the prior that joined the data, and the weight of each.
   struct Prior {
     double weight = 0;

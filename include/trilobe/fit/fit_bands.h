@@ -7,6 +7,7 @@
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/spectral_model.h"
@@ -27,6 +28,11 @@ struct BandsFit {
 // Throws Error, which names the `source`, if the samples have no spectra, or the spec's D or G
 // differ by channel.
 void CheckBands(const std::string& source, const BrdfSamples& samples, const ModelSpec& spec);
+
+// The objective of the wavelengths of a measurement: of all samples or, of a table, of those that
+// have spectra and are fitted with the values that they were read with. Throws Error if there are
+// none.
+Objective WithSpectra(const Objective& data, const Measurement& measurement);
 
 // Fits d, s and F of each band, with D and G held as they are in `rgb`, a model of the objective's
 // spec that was fitted to the colours of the same samples. E of a band is then a quadratic function

@@ -68,6 +68,8 @@ struct FitOptions {
   // The fitting thread calls all callbacks but `stop` and `on_start`.
   // Called after the input has been checked, before the first step.
   std::function<void()> on_begin = [] {};
+  // Called as something begins that takes a while: "comparing with the measurement".
+  std::function<void(const std::string&)> on_stage = [](const std::string&) {};
   // Called after each iteration of every fit.
   std::function<void(const IterationRecord&)> on_progress = [](const IterationRecord&) {};
   // SolverOptions::on_start of every fit.

@@ -30,7 +30,10 @@ struct FormOptions {
   // Anisotropic models; the defaults are nodes that the data resolve.
   std::optional<Axis> d_nodes = {}, g_nodes = {};
   std::optional<int> f_bins = {};
-  bool nodes_by_held_out = false;  // chooses nodes of D and G by ChooseNodes
+  // How nodes of D and G are chosen: as given above or by default; finer than the default where
+  // that leaves an error that is seen (FinerNodes); or by ChooseNodes from the coarsest on.
+  enum class NodeRule { kFinerWhereSeen, kGiven, kHeldOut };
+  NodeRule nodes = NodeRule::kFinerWhereSeen;
 };
 
 // A value of --model, and of Python's `model`.
@@ -60,8 +63,13 @@ ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, in
 // The NamedForm that a spec has: "shared", "independent" or "anisotropic"; else "other".
 std::string ModelName(const ModelSpec& spec);
 
-// Candidates for ChooseNodes; empty without nodes_by_held_out. Throws Error for an isotropic spec.
+// Candidates for ChooseNodes; empty without NodeRule::kHeldOut. Throws Error for an isotropic spec.
 std::vector<FormSpec> NodesToTry(const Measurement& measurement, const FormOptions& options,
+                                 const ModelSpec& spec);
+
+// The spec on its own nodes and on finer ones, coarse to fine, where the data are directions on a
+// grid and nothing but defaults decided on the nodes; else nothing.
+std::vector<FormSpec> FinerNodes(const Measurement& measurement, const FormOptions& options,
                                  const ModelSpec& spec);
 
 }  // namespace trilobe

@@ -42,7 +42,7 @@ def fit(
     d_nodes: str | None = None,
     g_nodes: str | None = None,
     f_bins: int | None = None,
-    nodes: Literal["given", "held_out"] = "given",
+    nodes: Literal["auto", "given", "held_out"] = "auto",
     init: InitName = "analytic",
     start: Brdf | str | os.PathLike[str] | None = None,
     weighting: str = "appearance",

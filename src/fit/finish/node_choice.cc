@@ -21,7 +21,6 @@ namespace trilobe {
 namespace {
 
 constexpr int kOneOf = 5;              // pairs of directions of which one is held out
-constexpr double kWorthwhile = 0.99;   // of E before, held out: finer nodes must get below
 constexpr int kFirstIterations = 12;   // from the starting point
 constexpr int kFurtherIterations = 6;  // from the fit on coarser nodes
 
@@ -94,6 +93,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladde
   }
   CheckNumber("prior", options.prior, options.prior >= 0 && std::isfinite(options.prior),
               "finite and 0 or more");
+  CheckNumber("worthwhile", options.worthwhile, options.worthwhile > 0 && options.worthwhile <= 1,
+              "above 0 and at most 1");
   std::vector<int> kept, held;
   const std::vector<bool> held_out = HeldOut(samples, options.seed);
   for (int j = 0; j < samples.size(); ++j) (held_out[j] ? held : kept).push_back(j);
@@ -113,7 +114,7 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladde
   };
   double E = 0;  // relative, of the model that is judged
   Search search([&E](const FactorModel& /*model*/) { return -10 * std::log10(E); },
-                {.over_leader = -10 * std::log10(kWorthwhile)});
+                {.over_leader = -10 * std::log10(options.worthwhile)});
   Objective fitted = objective_of(Selected(samples, kept));
   if (options.prior > 0) {
     fitted = Objective(

@@ -164,6 +164,13 @@ void PrintSummary(const FitReport& report) {
     PrintLine(std::string("azimuths     ") +
               (report.azimuths->matter ? "anisotropic: " : "isotropic: ") + report.azimuths->why);
   }
+  if (report.nodes && report.nodes->chosen > 0) {
+    const Candidate &coarsest = report.nodes->tried.front(),
+                    &chosen = report.nodes->tried[report.nodes->chosen];
+    PrintLine("nodes        " + chosen.name + ": E of directions held out is " +
+              Text(100 * chosen.E, 3) + " % on these, " + Text(100 * coarsest.E, 3) + " % on " +
+              coarsest.name);
+  }
   if (report.finished.too_few_to_choose > 0) {
     PrintLine("note         no form was chosen, which takes " +
               std::to_string(report.finished.too_few_to_choose) +

@@ -31,6 +31,7 @@ struct NodeChoiceOptions {
   uint64_t seed = 1;
   double prior = 1;                         // SyntheticPriorOptions::weight, or 0 for no prior
   std::optional<HemisphereGrid> grid = {};  // SyntheticPriorOptions::grid
+  double worthwhile = 0.99;                 // of E before, held out: finer nodes must get below
   // SolverOptions::on_iteration of each candidate's fit.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
   StopCheck stop = {};
@@ -46,11 +47,11 @@ struct NodeChoice {
   double seconds = 0;  // total
 };
 
-// Tries the candidates in order while the error on held-out pairs of directions falls by at least
-// 1 %. Each is fitted by a few iterations, starting from the one before, to the other pairs and to
-// a prior made from them. The result does not depend on the number of threads. If stopped, chooses
-// among those tried. Throws Error for an empty ladder, samples without directions, and too few
-// samples to hold any out.
+// Tries the candidates in order while the error on held-out pairs of directions falls below the
+// share `worthwhile` of what it was. Each is fitted by a few iterations, starting from the one
+// before, to the other pairs and to a prior made from them. The result does not depend on the
+// number of threads. If stopped, chooses among those tried. Throws Error for an empty ladder,
+// samples without directions, and too few samples to hold any out.
 NodeChoice ChooseNodes(const Objective& data, const std::vector<FormSpec>& ladder,
                        const NodeChoiceOptions& options);
 
