@@ -76,6 +76,9 @@ scripts/check_pip.sh
 step "Building wheels of it, and installing them where there is nothing but Python"
 scripts/wheels.sh --check
 
+step "Fitting the materials that come along anew"
+quietly materials materials/make ${3:+"$3"} --check
+
 step "Comparing the figures of the pages with their commands and tables"
 scripts/check_figures.py ${3:+--data="$3"}
 

@@ -27,7 +27,7 @@ TEST(Materials, AreListedWithWhereTheyComeFrom) {
     EXPECT_THAT(result.out, HasSubstr("  " + material["name"].get<std::string>() + " "));
     EXPECT_EQ(material["licence"], "CC0 1.0");
     EXPECT_LE(material["parameters"],
-              material["source"].get<std::string>().starts_with("RGL") ? 822 : 1902);
+              material["source"].get<std::string>().starts_with("RGL") ? 822 : 4062);
   }
 }
 
@@ -64,7 +64,6 @@ TEST(Materials, AreNoMeasurementsNorMeasurementsModels) {
   const std::string material = "material:" + Listed()[0]["name"].get<std::string>();
   for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
            {"fit", material, "--out=" + (folder / "fit")},
-           {"score", material, material},
            {"plot", material, material, "--out=" + (folder / "plot")},
            {"view", material, material, "--out=" + (folder / "x.html")}}) {
     const ProgramResult result = RunProgram(command);
