@@ -14,10 +14,13 @@ struct Command {
   std::string name;
   std::string summary;    // one line for `trilobe help`
   std::string arguments;  // "SOURCE", "MODEL SOURCE", ...
+  std::string doing =
+      {};  // what goes on while it runs (Status): "comparing"; "" if it tells itself
   int min_arguments = 0;
   int max_arguments = 0;
   std::string details;             // text for `trilobe help NAME`: what it reads, does and writes
   std::vector<std::string> flags;  // accepted flags, listed in its help
+  std::string lists = {};          // further text for `trilobe help NAME --all`
   // Other names of flags, and the flags: {"starts", "runs"}.
   std::vector<std::pair<std::string, std::string>> other_names = {};
   // Flags that only some values of another flag accept (--solver): those of all values, and the

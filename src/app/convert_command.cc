@@ -255,6 +255,7 @@ Command ConvertCommand() {
       .name = "convert",
       .summary = "write a measurement or a model in MERL layout, as CSV, or for a renderer",
       .arguments = "SOURCE|MODEL",
+      .doing = "converting",
       .min_arguments = 1,
       .max_arguments = 1,
       .details =

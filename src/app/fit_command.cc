@@ -20,6 +20,7 @@
 #include "app/scene_plan.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
+#include "app/status.h"
 #include "core/algebra/openblas.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
@@ -65,6 +66,8 @@ int RunFitOfOne(const std::string& source) {
   ResultFolder* const into = folder ? &*folder : nullptr;
   const int threads = ThreadsFromFlags();
   std::optional<InterruptGuard> guard;  // while it reads, Ctrl-C ends it at once
+  settings.fit.on_stage = Status::Stage;
+  Status::Stage("reading " + source);
   std::optional<Progress> progress;
   const auto show = [&](const auto& what) {
     if (!progress) progress.emplace(settings.fit.solver_options(ModelSpec()), FLAGS_verbose);
@@ -72,7 +75,7 @@ int RunFitOfOne(const std::string& source) {
   };
   FitRun run = *RunOneFit(
       source, settings, threads, into, [&] { guard.emplace(); }, show, show);
-  progress.reset();
+  Status::End();
   PrintSummary(run.report);
   if (FLAGS_verbose) PrintDetails(run.report);
   if (!run.earlier.empty()) {
@@ -83,7 +86,9 @@ int RunFitOfOne(const std::string& source) {
     PrintSeconds(run.report);
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
+    if (settings.plots) Status::Stage("drawing pictures");
     const std::string undrawn = WriteOtherFiles(&run, settings, into);
+    Status::End();
     if (!undrawn.empty()) {
       std::cerr << "trilobe: pictures are missing: " << Printable(undrawn) << "\n";
     }
@@ -173,11 +178,11 @@ Command FitCommand() {
           "(docs/batch.md).\n\nWith --scene, does what `trilobe plan` says for the "
           "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
           "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
-          "command goes on with the others.\n\nsolvers:\n" +
-          ListEntries(Solvers()) + "\nstarting points (--init):\n" + ListEntries(InitialModels()) +
-          "\nweightings:\n" + ListEntries(Weightings()) +
-          "\n`trilobe help fit --solver=NAME` shows the flags of another solver than this:",
+          "command goes on with the others.\n\n`trilobe help fit --solver=NAME` shows the flags of "
+          "another solver than this; `trilobe solvers` lists all:",
       .flags = FitFlags(),
+      .lists = "solvers:\n" + ListEntries(Solvers()) + "\nstarting points (--init):\n" +
+               ListEntries(InitialModels()) + "\nweightings:\n" + ListEntries(Weightings()),
       .particular_flags = ParticularSolverFlags(),
       .particular_help = [] { return DescribeSolver(SolverFromFlags()); },
       .run = RunFit};

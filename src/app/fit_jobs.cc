@@ -19,6 +19,7 @@
 #include "app/flags.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/status.h"
 #include "core/base/file_names.h"
 #include "core/files/content.h"
 #include "core/files/file.h"
@@ -245,11 +246,10 @@ void MakeJobs(size_t count, int at_once, const std::string& things,
       outcome.error = MessageOf(exception);
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    progress.Clear();
+    Status::Clear();
     tell(k, ++done);
     progress.Done(outcome.name, outcome.state != FitOutcome::State::kKept);
   });
-  progress.Clear();
 }
 
 std::string ErrorToSend(const std::string& error, const FitOutcome& outcome,

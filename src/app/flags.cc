@@ -100,13 +100,6 @@ std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& fl
   return given;
 }
 
-std::string FlagHelp(const std::string& flag) {
-  const auto info = gflags::GetCommandLineFlagInfoOrDie(flag.c_str());
-  std::string value = info.default_value.empty() ? "..." : info.default_value;
-  if (info.type == "double") value = Text(std::stod(value));  // gflags gives 17 digits
-  return "  --" + flag + "=" + value + "\n      " + info.description + "\n";
-}
-
 int ThreadsFromFlags() {
   if (FLAGS_threads < 0) {
     throw Error(ErrorKind::kRange, "--threads is negative; give 0 for all cores")

@@ -49,9 +49,6 @@ std::vector<std::string> Split(const std::string& text, char separator);
 // Values of those of these flags that were given, by name.
 std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags);
 
-// A flag for `trilobe help COMMAND`: "  --lobes=3", and its description on the next line.
-std::string FlagHelp(const std::string& flag);
-
 // --threads, at most the number of cores; 0: all cores. The first call with more prints a warning
 // on standard error. Throws Error if negative.
 int ThreadsFromFlags();

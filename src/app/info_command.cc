@@ -30,6 +30,7 @@ Command InfoCommand() {
       .name = "info",
       .summary = "describe a measurement or a model file",
       .arguments = "SOURCE|MODEL",
+      .doing = "reading",
       .min_arguments = 1,
       .max_arguments = 1,
       .details =

@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <string>
@@ -21,7 +20,9 @@
 #include "app/command.h"
 #include "app/fit_flags.h"
 #include "app/flags.h"
+#include "app/help.h"
 #include "app/solver_flags.h"
+#include "app/status.h"
 #include "core/base/names.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
@@ -60,6 +61,7 @@ struct CommandLine {
   std::vector<std::string> words;
   std::vector<Flag> flags;
   bool help = false;     // --help, -help or -h
+  bool all = false;      // --all, of help
   bool version = false;  // --version
 };
 
@@ -119,6 +121,10 @@ CommandLine ReadCommandLine(int argc, const char* const* argv) {
       line.help = true;
       continue;
     }
+    if (word == "--all") {
+      line.all = true;
+      continue;
+    }
     if (word == "--version" || word == "-version") {
       line.version = true;
       continue;
@@ -174,45 +180,19 @@ std::string KnownCommands() {
 }
 
 const Command& FindCommand(const std::string& name) {
-  for (const Command& command : Commands()) {
-    if (command.name == name) return command;
-  }
-  throw Error(ErrorKind::kUnknown, "unknown command '" + name + "'; known: " + KnownCommands())
-      .About("command", name);
-}
-
-void PrintHelp() {
-  std::cout << "trilobe fits multi-lobe non-parametric microfacet models to measured BRDFs.\n\n"
-               "usage: trilobe COMMAND ARGUMENTS [--FLAG=VALUE ...]\n\n";
-  for (const Command& command : Commands()) {
-    std::cout << "  " << std::left << std::setw(10) << command.name << command.summary << "\n";
-  }
-  std::cout
-      << "  help      this page, or `trilobe help COMMAND`\n\n"
-         "A SOURCE is a MERL .binary file, an RGL *_rgb.bsdf file, a UTIA .bin file or another of\n"
-         "docs/file-formats.md, or synth:NAME (`trilobe synth` lists the names).\n";
-}
-
-void PrintHelp(const Command& command) {
-  // Computed before anything is printed, since it may throw.
-  const std::string particular =
-      command.particular_help != nullptr ? "\n" + command.particular_help() : "";
-  std::cout << "usage: trilobe " << command.name << " " << command.arguments
-            << " [--FLAG=VALUE ...]\n\n"
-            << command.summary << "\n\n"
-            << command.details << "\n"
-            << particular;
-  if (!command.flags.empty()) std::cout << "\nflags:\n";
-  for (const std::string& flag : command.flags) std::cout << FlagHelp(flag);
+  const auto found = std::ranges::find(Commands(), name, &Command::name);
+  if (found != Commands().end()) return *found;
+  std::vector<std::string_view> known;
+  for (const Command& command : Commands()) known.push_back(command.name);
+  known.emplace_back("help");
+  throw UnknownName("command", name, known);
 }
 
 // The flag of a command that another name was probably meant to be; "" if it is far from all.
 std::string MeantFlag(const std::string& name, const Command& command) {
   std::vector<std::string_view> taken(command.flags.begin(), command.flags.end());
   taken.insert(taken.end(), command.particular_flags.begin(), command.particular_flags.end());
-  if (taken.empty()) return "";
-  const std::string_view nearest = NearestName(name, taken);
-  return 3 * EditDistance(name, nearest) <= name.size() ? std::string(nearest) : "";
+  return MeantName(name, taken);
 }
 
 // Flags that the command does not take must not be swallowed in silence.
@@ -222,6 +202,7 @@ void CheckFlags(const CommandLine& line, const Command& command) {
       return std::ranges::find(names, flag.name) != names.end();
     };
     if (is_in(command.flags) || is_in(command.particular_flags)) continue;
+    if (flag.name == "quiet") continue;
     // Flags of gflags and glog, such as --version and --v, are valid for all commands.
     if (flag.known &&
         gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str()).filename.find("src/app/") ==
@@ -257,12 +238,12 @@ void TakeOtherNames(CommandLine* line) {
 
 int Help(const CommandLine& line) {
   if (line.words.empty()) {
-    PrintHelp();
+    std::cout << HelpText();
     return 0;
   }
   const Command& command = FindCommand(line.words[0]);
   CheckFlags(line, command);
-  PrintHelp(command);
+  std::cout << HelpText(command, line.all);
   return 0;
 }
 
@@ -279,6 +260,8 @@ int Run(const CommandLine& line) {
                     "`")
         .About("arguments", count);
   }
+  if (command.doing.empty()) return command.run(arguments);
+  const StageScope stage(command.doing);
   return command.run(arguments);
 }
 
@@ -304,6 +287,7 @@ int Main(int argc, char** argv) {
   CommandLine line = ReadCommandLine(argc, argv);
   TakeOtherNames(&line);
   SetFlags(line, argv[0]);
+  const LineClearing clearing;
   if (argc < 2) line.help = true;
   if (!line.words.empty() && line.words[0] == "help") {
     line.words.erase(line.words.begin());
@@ -314,6 +298,10 @@ int Main(int argc, char** argv) {
     return 0;
   }
   if (line.help) return Help(line);
+  if (line.all) {
+    throw Error(ErrorKind::kUnknown, "--all is for `trilobe help COMMAND`; leave it out")
+        .About("flag", "all");
+  }
   if (line.words.empty()) {
     throw Error(ErrorKind::kMissing, "no command; known: " + KnownCommands()).About("command");
   }

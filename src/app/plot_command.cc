@@ -54,6 +54,7 @@ Command PlotCommand() {
   return {.name = "plot",
           .summary = "draw a model's factors, its fit to a measurement, and a trace",
           .arguments = "MODEL [SOURCE]",
+          .doing = "drawing",
           .min_arguments = 1,
           .max_arguments = 2,
           .details =

@@ -1,7 +1,5 @@
 #include "app/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "app/status.h"
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {
@@ -29,81 +28,79 @@ std::string Describe(const StartResult& start, double lowest) {
   return text.data();
 }
 
+// "12 s", rounded up.
+std::string Whole(const char* format, double number) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, std::ceil(std::max(0.0, number)));
+  return text.data();
+}
+
 }  // namespace
 
 Progress::Progress(const SolverOptions& options, bool verbose)
     : max_iterations_(options.max_iterations),
       max_seconds_(options.max_seconds),
-      on_terminal_(isatty(STDERR_FILENO) != 0),
       verbose_(verbose) {}
 
-Progress::~Progress() {
-  if (on_terminal_) std::fputs("\r\033[K", stderr);
-}
-
 void Progress::Show(const IterationRecord& record) {
-  if (!on_terminal_) return;
   const double before = last_.minimised(), now = record.minimised();
   const double relative_change = before > 0 ? (now - before) / before : 0;
-  std::fprintf(stderr, "\r\033[Kiteration %d   E %s%.6g", record.iteration,
-               record.objective_with_prior ? "with the prior " : "", now);
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "iteration %d   E %s%.6g", record.iteration,
+                record.objective_with_prior ? "with the prior " : "", now);
+  std::string line = text.data();
   if (record.iteration > 0) {
     const double left =
         std::min((max_iterations_ - record.iteration) * record.seconds / record.iteration,
                  max_seconds_ - record.seconds);
-    std::fprintf(stderr, " (%+.2g %%)   %.1f s, at most %.0f s left", 100 * relative_change,
-                 record.seconds, std::ceil(std::max(0.0, left)));
+    std::snprintf(text.data(), text.size(), " (%+.2g %%)   %.1f s", 100 * relative_change,
+                  record.seconds);
+    line += text.data() + Whole(", at most %.0f s left", left);
   }
-  std::fflush(stderr);
+  Status::Show(line);
   last_ = record;
 }
 
 void Progress::Show(const StartProgress& starts) const {
-  if (starts.start && (on_terminal_ || verbose_)) {
+  if (starts.start && (Status::OnTerminal() || verbose_)) {
     const StartResult& start = *starts.start;
-    std::fprintf(stderr, "%sstart %-14s E %-12.6g %s\n", on_terminal_ ? "\r\033[K" : "",
-                 start.name.c_str(), start.objective, Describe(start, starts.lowest).c_str());
+    Status::Clear();
+    std::fprintf(stderr, "start %-14s E %-12.6g %s\n", start.name.c_str(), start.objective,
+                 Describe(start, starts.lowest).c_str());
   }
-  if (!on_terminal_ || starts.start) return;
+  if (starts.start) return;
   const double seconds = since_.Seconds();
   const double left =
       std::min(seconds * (1 / std::max(starts.share, 1e-9) - 1), max_seconds_ - seconds);
-  std::fprintf(stderr,
-               "\r\033[Kstart %d of %d, round %d of %d   %.1f s, at most %.0f s left for starts",
-               starts.ended, starts.starts, starts.round, starts.rounds, seconds,
-               std::ceil(std::max(0.0, left)));
-  std::fflush(stderr);
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "start %d of %d, round %d of %d   %.1f s", starts.ended,
+                starts.starts, starts.round, starts.rounds, seconds);
+  Status::Show(text.data() + Whole(", at most %.0f s left for starts", left));
 }
 
-JobProgress::JobProgress(size_t count, std::string what)
-    : on_terminal_(isatty(STDERR_FILENO) != 0), count_(count), what_(std::move(what)) {
+JobProgress::JobProgress(size_t count, std::string what) : count_(count), what_(std::move(what)) {
   Show();
 }
 
-JobProgress::~JobProgress() { Clear(); }
-
-void JobProgress::Clear() const {
-  if (on_terminal_) std::fputs("\r\033[K", stderr);
-}
+JobProgress::~JobProgress() { Status::End(); }
 
 void JobProgress::Done(const std::string& name, bool took_time) {
   ++done_;
   timed_ += took_time ? 1 : 0;
-  last_ = ", last " + Printable(name);
+  last_ = ", last " + name;
   Show();
 }
 
 void JobProgress::Show() const {
-  if (!on_terminal_) return;
-  std::fprintf(stderr, "\r\033[K%zu of %zu %s finished%s", done_, count_, what_.c_str(),
-               last_.c_str());
+  std::string line =
+      std::to_string(done_) + " of " + std::to_string(count_) + " " + what_ + " finished" + last_;
   if (timed_ > 0 && done_ < count_) {
     const double left =
         since_.Seconds() / static_cast<double>(timed_) * static_cast<double>(count_ - done_);
-    std::fprintf(stderr, left < 90 ? ", about %.0f s left" : ", about %.0f min left",
-                 left < 90 ? std::ceil(left) : std::ceil(left / 60));
+    line +=
+        left < 90 ? Whole(", about %.0f s left", left) : Whole(", about %.0f min left", left / 60);
   }
-  std::fflush(stderr);
+  Status::Stage(line);
 }
 
 }  // namespace trilobe

@@ -1,7 +1,13 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "app/command.h"
 #include "app/flags.h"
@@ -12,6 +18,10 @@
 #include "fit/reports/score_report.h"
 #include "fit/reports/verdict_report.h"
 #include "io/pictures/plots.h"
+#include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
+#include "trilobe/fit/as_measurement.h"
 #include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
@@ -77,6 +87,94 @@ void PrintDetails(const Scored& scored, const Objective& objective) {
   }
 }
 
+// A direction pair as a key: angles to thousandths of a degree, theta of 0 without an azimuth.
+// Without `by_azimuth` the azimuth between both counts alone.
+using DirectionKey = std::array<int64_t, 4>;
+DirectionKey KeyOf(const SphericalAngles& at, bool by_azimuth) {
+  constexpr int64_t kTurn = 360'000;
+  const auto whole = [](double angle) { return std::llround(1e3 * RadiansToDegrees(angle)); };
+  const auto turned = [](int64_t angle) { return ((angle % kTurn) + kTurn) % kTurn; };
+  const int64_t theta_i = whole(at.theta_i), theta_o = whole(at.theta_o);
+  const int64_t phi_i = theta_i == 0 ? 0 : whole(at.phi_i);
+  const int64_t phi_o = theta_o == 0 ? 0 : whole(at.phi_o);
+  if (by_azimuth) return {theta_i, turned(phi_i), theta_o, turned(phi_o)};
+  const bool has_both = theta_i != 0 && theta_o != 0;
+  const int64_t between = has_both ? turned(phi_o - phi_i) : 0;
+  return {theta_i, 0, theta_o, std::min(between, kTurn - between)};
+}
+
+// The samples of one measurement at whose directions another one has some too, and its values
+// there.
+struct InCommon {
+  BrdfSamples samples;
+  std::vector<Rgb> others;
+};
+InCommon AtCommonDirections(const Measurement& other, const Measurement& measured) {
+  if (measured.table) {
+    throw ErrorIn(ErrorKind::kUnsupported, other.source,
+                  "scattered samples cannot be read at the bins of a table; give the table first, "
+                  "or fit the samples and give the model")
+        .About("SOURCE");
+  }
+  const bool by_azimuth = other.anisotropic || measured.anisotropic;
+  std::map<DirectionKey, int> known;
+  for (int j = 0; j < other.samples.size(); ++j) {
+    known.insert({KeyOf(other.samples.directions[j], by_azimuth), j});
+  }
+  std::vector<int> kept;
+  InCommon common;
+  for (int j = 0; j < measured.samples.size(); ++j) {
+    const auto found = known.find(KeyOf(measured.samples.directions[j], by_azimuth));
+    if (found == known.end()) continue;
+    kept.push_back(j);
+    common.others.push_back(other.samples.rho[found->second]);
+  }
+  if (kept.empty()) {
+    throw ErrorIn(ErrorKind::kData, other.source,
+                  "no sample has the directions of one in " + Printable(measured.source) +
+                      "; fit one of them, and give the model")
+        .About("directions");
+  }
+  common.samples = Selected(measured.samples, kept);
+  return common;
+}
+
+// What is compared with a measurement: a model, a table, or values at its samples.
+struct Compared {
+  std::optional<FactorModel> model = {};
+  std::optional<BrdfTable> table = {};
+  std::optional<TabulatedBrdf> tabulated = {};
+  std::optional<Measurement> scattered = {};
+
+  bool is_material() const { return !scattered; }
+  Material material() const {
+    return model ? MaterialOf(*model) : Isotropic(Interpolated(*tabulated));
+  }
+  ModelSpec SpecFor(const BrdfSamples& samples) const {
+    return model ? model->spec() : ModelSpec::SharedFactors(0, samples.grid);
+  }
+};
+
+void ReadCompared(const std::string& path, const SourceOptions& options, Compared* compared) {
+  if (IsModelFile(path)) {
+    compared->model = ModelOfSource(path).model;
+    return;
+  }
+  Measurement measurement = MeasurementOfSource(path, options);
+  if (measurement.table) {
+    compared->table = std::move(measurement.table);
+    compared->tabulated.emplace(*compared->table);
+  } else {
+    compared->scattered = std::move(measurement);
+  }
+}
+
+// The second argument. A model stands for what it reflects.
+Measurement ReadMeasured(const std::string& path, const SourceOptions& options, int threads) {
+  if (!IsModelFile(path)) return MeasurementOfSource(path, options);
+  return AsMeasurement(ModelOfSource(path).model, path, threads, HemisphereGrid());
+}
+
 int RunScore(std::span<const std::string> arguments) {
   const Weighting weighting = FindWeighting(TextFlag("weighting"));
   const AppearanceOptions appearance_options = AppearanceOptionsFromFlags();
@@ -85,36 +183,36 @@ int RunScore(std::span<const std::string> arguments) {
   if (!FLAGS_out.empty()) {
     Inputs({arguments[0], arguments[1], FLAGS_probe}).CheckOutput(FLAGS_out);
   }
-  FactorModel model;
-  std::optional<BrdfTable> other;
-  if (IsModelFile(arguments[0])) {
-    model = ModelOfSource(arguments[0]).model;
-  } else {
-    other = LoadTable(arguments[0], SourceOptionsFromFlags());
+  if (IsModelFile(arguments[0]) && IsModelFile(arguments[1])) {
+    RefuseForModel(arguments[1], MeasurementFlags());
   }
-  const Measurement measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
-  PrintNotes(measured);
-  const PictureData pictured = PictureDataOf(measured);
+  Compared compared;
+  ReadCompared(arguments[0], SourceOptionsFromFlags(), &compared);
+  const Measurement measured = ReadMeasured(arguments[1], SourceOptionsFromFlags(), threads);
+  const PictureData pictured = compared.is_material() ? PictureDataOf(measured) : PictureData();
   if (!FLAGS_out.empty() && pictured.empty()) TableOf(measured);  // its error
-  BrdfSamples samples = SamplesOf(measured);
-  const ModelSpec spec = other ? ModelSpec::SharedFactors(0, samples.grid) : model.spec();
-  const Objective objective(std::move(samples), spec, weighting, threads);
-  std::optional<TabulatedBrdf> tabulated;
-  if (other) tabulated.emplace(*other);
-  const Material fitted = other ? Isotropic(Interpolated(*tabulated)) : MaterialOf(model);
+  InCommon common = compared.scattered ? AtCommonDirections(*compared.scattered, measured)
+                                       : InCommon{.samples = SamplesOf(measured), .others = {}};
+  if (compared.scattered) PrintNotes(*compared.scattered);
+  PrintNotes(measured);
+  const ModelSpec spec = compared.SpecFor(common.samples);
+  const Objective objective(std::move(common.samples), spec, weighting, threads);
+  if (compared.model) {
+    common.others = EvaluateSamples(*compared.model, objective.samples(), threads);
+  } else if (compared.table) {
+    common.others = ValuesAt(compared.material().angular, objective.samples());
+  }
   Scored scored{.model = arguments[0],
-                .score = other
-                             ? ScoreValues(objective, ValuesAt(fitted.angular, objective.samples()))
-                             : ScoreModel(objective, model)};
+                .score = compared.model ? ScoreModel(objective, *compared.model)
+                                        : ScoreValues(objective, common.others)};
   std::optional<SeenError> seen;
-  if (pictured.empty()) {
-    const BrdfSamples& compared = objective.samples();
-    seen = CompareSampledSphere(
-        compared,
-        other ? ValuesAt(fitted.angular, compared) : EvaluateSamples(model, compared, threads),
-        fitted.spherical, measured.anisotropic, appearance_options);
+  if (!compared.is_material()) {
+    seen = CompareSamples(objective.samples(), common.others);
+  } else if (pictured.empty()) {
+    seen = CompareSampledSphere(objective.samples(), common.others, compared.material().spherical,
+                                measured.anisotropic, appearance_options);
   } else {
-    scored.appearance = CompareAppearance(pictured, fitted, appearance_options);
+    scored.appearance = CompareAppearance(pictured, compared.material(), appearance_options);
   }
   scored.verdict = MakeVerdict(scored.appearance, seen, BasisOf(objective.samples(), 0),
                                {.irreducible = IrreducibleShare(scored.score)});
@@ -127,7 +225,9 @@ int RunScore(std::span<const std::string> arguments) {
       PrintDetails(scored, objective);
     }
   }
-  if (!FLAGS_out.empty()) WriteSpherePair(pictured, fitted, FLAGS_out, appearance_options);
+  if (!FLAGS_out.empty()) {
+    WriteSpherePair(pictured, compared.material(), FLAGS_out, appearance_options);
+  }
   return 0;
 }
 
@@ -136,11 +236,15 @@ int RunScore(std::span<const std::string> arguments) {
 Command ScoreCommand() {
   return {
       .name = "score",
-      .summary = "compare a model with a measurement",
-      .arguments = "MODEL|SOURCE SOURCE",
+      .summary = "compare a model or a measurement with another one",
+      .arguments = "MODEL|SOURCE SOURCE|MODEL",
+      .doing = "comparing",
       .min_arguments = 2,
       .max_arguments = 2,
       .details =
+          "The second one is taken for the truth. Two lists of scattered samples are compared at "
+          "the "
+          "directions that both have. "
           "Prints what a person would see, and what that rests on. With --verbose also the "
           "objective "
           "E under\n--weighting, and errors that know no weights: RMSE; PSNR over the largest "

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "app/flags.h"
+#include "app/help.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/solvers/starts/solvers.h"
 

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app/command.h"
+#include "app/help.h"
 #include "app/solver_flags.h"
 #include "trilobe/solvers/starts/solvers.h"
 
@@ -9,15 +10,18 @@ namespace {
 
 int RunSolvers(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
-    std::cout << DescribeSolver(FindSolver(arguments[0]))
+    std::cout << Wrapped(DescribeSolver(FindSolver(arguments[0])), OutputWidth())
               << "Flags of all solvers: `trilobe help fit`\n";
     return 0;
   }
+  std::string text;
   const std::string& default_name = Solvers().front().name;
   for (const SolverEntry& solver : Solvers()) {
-    std::cout << solver.name << (solver.name == default_name ? " (default)" : "") << "\n    "
-              << solver.description << "\n    " << solver.reference << "\n";
+    text += solver.name + (solver.name == default_name ? " (default)" : "") + "\n    " +
+            solver.description + "\n    " + solver.reference + "\n\n";
   }
+  text.pop_back();
+  std::cout << Wrapped(text, OutputWidth());
   return 0;
 }
 

@@ -44,6 +44,7 @@ Command SynthCommand() {
       .name = "synth",
       .summary = "write a synthetic measurement, or list the materials",
       .arguments = "[NAME[@GRID]]",
+      .doing = "computing",
       .min_arguments = 0,
       .max_arguments = 1,
       .details =

@@ -99,6 +99,7 @@ Command ViewCommand() {
       .name = "view",
       .summary = "write a page that shows a model beside its measurement",
       .arguments = "MODEL [SOURCE] | FOLDER",
+      .doing = "making the page",
       .min_arguments = 1,
       .max_arguments = 2,
       .details =

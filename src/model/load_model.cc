@@ -34,13 +34,12 @@ std::string_view MaterialText(std::string_view path) {
         .At(path)
         .About("materials");
   }
-  const std::string_view nearest = NearestName(name, known);
-  const bool meant = 3 * EditDistance(name, nearest) <= name.size();
-  throw Error(ErrorKind::kUnknown, std::string(path) + ": there is no material of this name; " +
-                                       (meant ? "did you mean '" + std::string(kMaterialPrefix) +
-                                                    std::string(nearest) + "'? "
-                                              : "") +
-                                       "`trilobe materials` lists all")
+  const std::string meant = MeantName(name, known);
+  throw Error(
+      ErrorKind::kUnknown,
+      std::string(path) + ": there is no material of this name; " +
+          (meant.empty() ? "" : "did you mean '" + std::string(kMaterialPrefix) + meant + "'? ") +
+          "`trilobe materials` lists all")
       .At(path)
       .About("material", name);
 }

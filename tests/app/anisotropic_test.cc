@@ -177,7 +177,6 @@ TEST_F(AnisotropicCommands, WhatCannotBeIsOneLine) {
   ExpectRefusal({"score", model, "synth:plastic@30x30x60"}, "knows no azimuths");
   ExpectRefusal({"fit", "synth:plastic@30x30x60", "--init=" + model}, "knows no azimuths");
   ExpectRefusal({"fit", kSilk, "--model=auto", "--nodes=held_out"}, "auto chooses the nodes");
-  ExpectRefusal({"score", kVelvet, kVelvet}, "needs a table");
   ExpectRefusal({"compare", In("fit")}, "plan.json");
 }
 
@@ -260,7 +259,7 @@ TEST_F(AnisotropicCommands, FitChoosesTheFormThatLooksBest) {
 }
 
 TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
-  ExpectRefusal({"fit", kSilk, "--nodes=all"}, "--nodes=all: give given or held_out");
+  ExpectRefusal({"fit", kSilk, "--nodes=all"}, "--nodes=all: give auto, given or held_out");
   ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--d_nodes=4x12"}, "leave out --d_nodes");
   ExpectRefusal({"fit", kSilk, "--stretch=0.1,0.2"}, "--stretch is for isotropic models");
   ExpectRefusal({"fit", kSilk, "--nodes=held_out", "--model=isotropic"},

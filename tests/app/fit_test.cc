@@ -509,6 +509,38 @@ TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
   EXPECT_NEAR(file.fit.objective, trace.back().objective, 1e-12 * trace.back().objective);
 }
 
+// Parts of a line that is drawn over and over.
+std::vector<std::string> Drawn(const std::string& text) {
+  const std::string clear = "\r\033[K";
+  std::vector<std::string> parts;
+  for (size_t at = text.find(clear); at != std::string::npos;) {
+    const size_t begin = at + clear.size(), next = text.find(clear, begin);
+    const std::string part = text.substr(begin, next == std::string::npos ? next : next - begin);
+    if (part.find('\n') == std::string::npos) parts.push_back(part);
+    at = next;
+  }
+  return parts;
+}
+
+TEST(Fit, SaysOnATerminalWhatGoesOn) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> arguments = {"fit", "synth:plastic@30x30x60", "--max_iterations=3",
+                                              "--out=" + (folder / "a folder of a long name")};
+  for (const uint16_t columns : {uint16_t{40}, uint16_t{80}}) {
+    const TerminalResult result = RunOnTerminal(arguments, "", 0, 1, columns);
+    EXPECT_EQ(result.status, 0);
+    const std::vector<std::string> drawn = Drawn(result.text);
+    for (const char* const stage : {"reading synth:plastic", "fitting", "finishing: data edge",
+                                    "comparing with the measure"}) {
+      EXPECT_THAT(drawn, testing::Contains(testing::StartsWith(stage))) << columns;
+    }
+    for (const std::string& line : drawn) EXPECT_LT(line.size(), columns) << line;
+  }
+  std::vector<std::string> quiet = arguments;
+  quiet.emplace_back("--quiet");
+  EXPECT_THAT(Drawn(RunOnTerminal(quiet, "", 0).text), testing::Each(""));
+}
+
 // The solver is through at once; what comes then takes seconds.
 TEST(Fit, CtrlCWhileFinishingKeepsTheModelToo) {
   const TemporaryFolder folder;

@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -19,18 +21,23 @@ struct TerminalResult {
   std::string text;  // received by the terminal, control characters included
 };
 
-// Runs the real program on a terminal of its own. As soon as it has written `cue`, sends it
-// `signal` (none if 0), that many times.
+// Runs the real program on a terminal of its own, of so many columns. As soon as it has written
+// `cue`, sends it `signal` (none if 0), that many times.
 inline TerminalResult RunOnTerminal(const std::vector<std::string>& arguments,
-                                    const std::string& cue, int signal, int times = 1) {
+                                    const std::string& cue, int signal, int times = 1,
+                                    uint16_t columns = 80) {
   std::vector<std::string> words = CommandOf(Program(), arguments);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   int terminal = -1;
-  const pid_t pid = forkpty(&terminal, nullptr, nullptr, nullptr);
+  const winsize size_of_terminal = {
+      .ws_row = 24, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
+  const pid_t pid = forkpty(&terminal, nullptr, nullptr, &size_of_terminal);
   if (pid == 0) {
     HeedSignals();
+    setenv("TERM", "xterm", 1);
+    unsetenv("NO_COLOR");
     execv(argv[0], argv.data());
     _exit(127);
   }

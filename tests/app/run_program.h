@@ -85,6 +85,7 @@ inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
     const int err_fd = open(err.c_str(), O_CREAT | O_WRONLY, 0600);
     if (dup2(out_fd, STDOUT_FILENO) < 0 || dup2(err_fd, STDERR_FILENO) < 0) _exit(126);
     HeedSignals();
+    setenv("TRILOBE_TEST_QUIET", "1", 1);  // unless `environment` says otherwise
     for (std::string& setting : settings) putenv(setting.data());
     execv(argv[0], argv.data());
     _exit(127);

@@ -61,7 +61,7 @@ std::string FewSamples(const TemporaryFolder& folder, const std::string& materia
 // The flags of a command, with their defaults, as its help has them.
 std::map<std::string, std::string> HelpFlags(const std::string& command) {
   std::map<std::string, std::string> flags;
-  std::istringstream help(RunProgram({"help", command}).out);
+  std::istringstream help(RunProgram({"help", command, "--all"}).out);
   for (std::string line; std::getline(help, line);) {
     const size_t equal = line.find('=');
     if (!line.starts_with("  --") || equal == std::string::npos) continue;

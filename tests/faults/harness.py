@@ -42,7 +42,7 @@ KEPT = ".previous.json"  # a model of the earlier run, which stays beside the ne
 FIT_FILES = {"model.json", "trace.csv", "report.json", "convergence.csv", "reconstruction.binary", "factors.png",
              "slices.png", "spheres.png", "trace.png", "pair.png", "view.html"}
 # The pictures, and the score, take a tenth of the time under six lights instead of 600.
-ENVIRONMENT = {"TRILOBE_TEST_LIGHTS": "6"}
+ENVIRONMENT = {"TRILOBE_TEST_LIGHTS": "6", "TRILOBE_TEST_QUIET": "1"}
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 # Capabilities that let root read and write what the owner may not: CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH.
 OVERRIDES = [1, 2]

@@ -107,7 +107,8 @@ class Sweep:
 
     def __init__(self, program, room):
         self.program, self.room = program, pathlib.Path(room)
-        self.environment = {**os.environ, "TRILOBE_TEST_LIGHTS": "6", "XDG_CACHE_HOME": str(self.room / "none")}
+        self.environment = {**os.environ, "TRILOBE_TEST_LIGHTS": "6", "TRILOBE_TEST_QUIET": "1",
+                            "XDG_CACHE_HOME": str(self.room / "none")}
 
     def run(self, words):
         return subprocess.run([self.program, *words], capture_output=True, text=True, cwd=self.room,
@@ -127,7 +128,7 @@ class Sweep:
         (self.room / "probe.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n" + pixels)
 
     def flags_of(self, command):
-        return re.findall(r"^  --([a-z_0-9]+)=", self.run(["help", command]).stdout, flags=re.MULTILINE)
+        return re.findall(r"^  --([a-z_0-9]+)=", self.run(["help", command, "--all"]).stdout, flags=re.MULTILINE)
 
     def outcome(self, words, out):
         """(exit status, what is printed and written, the lines on stderr)."""

@@ -10,22 +10,27 @@
 
 namespace trilobe {
 
-// The entry of `choices` whose member `name` equals `name`. If there is none, throws Error with the
-// known names: "unknown weighting 'x'; known: compressive, log".
+// The name of `known` that another one was probably meant to be: nearest by EditDistance, by which
+// at most a third of its letters differ. Empty if there is none.
+std::string MeantName(std::string_view name, const std::vector<std::string_view>& known);
+
+// "unknown weighting 'lug'; known: compressive, log; did you mean 'log'?"
+Error UnknownName(std::string_view what, std::string_view name,
+                  const std::vector<std::string_view>& known);
+
+// The entry of `choices` whose member `name` equals `name`. Throws UnknownName if there is none.
 template <typename T>
 const T& FindNamed(std::string_view what, std::string_view name, const std::vector<T>& choices) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const T& choice : choices) {
     if (choice.name == name) return choice;
-    known += (known.empty() ? "" : ", ") + std::string(choice.name);
+    known.push_back(choice.name);
   }
-  throw Error(ErrorKind::kUnknown,
-              "unknown " + std::string(what) + " '" + std::string(name) + "'; known: " + known)
-      .About(what, name);
+  throw UnknownName(what, name, known);
 }
 
-// Number of character insertions, deletions and replacements that turn one name into the other
-// (Levenshtein 1966).
+// Number of character insertions, deletions, replacements and swaps of neighbours that turn one
+// name into the other, no character edited twice (Damerau 1964, Levenshtein 1966).
 size_t EditDistance(std::string_view a, std::string_view b);
 
 // The element of `known` (not empty) with the smallest edit distance to `name`; the first on ties.

@@ -50,6 +50,7 @@ TEST(NearestName, CountsEdits) {
   EXPECT_EQ(EditDistance("lobs", "lobes"), 1U);
   EXPECT_EQ(EditDistance("kitten", "sitting"), 3U);
   EXPECT_EQ(EditDistance("", "abc"), 3U);
+  EXPECT_EQ(EditDistance("alws", "awls"), 1U);
 }
 
 TEST(NearestName, TakesTheFirstOfSeveral) {
