@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/files/file.h"
 #include "tests/error_of.h"
 #include "tests/io/formats/read_as.h"
 #include "tests/test_directory.h"
@@ -62,6 +63,7 @@ TEST(CsvFile, HoldsScatteredSamples) {
   EXPECT_EQ(WriteMeasurement(one, directory.Path("y.csv")), "CSV, 4 samples");
   const Measurement two = LoadMeasurement(directory.Path("y.csv"));
   ExpectSameSamples(one.samples, two.samples);
+  EXPECT_THAT(ReadFile(directory.Path("y.csv")), testing::HasSubstr("\n10,0,60.5,123.456,0.1,"));
   // The order of the directions is kept, which half and difference angles do not tell.
   EXPECT_NEAR(two.samples.directions[1].theta_i, DegreesToRadians(60.5), 1e-15);
   EXPECT_NEAR(two.samples.directions[1].phi_i, DegreesToRadians(123.456), 1e-15);

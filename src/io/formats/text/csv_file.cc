@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -28,6 +29,15 @@ SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
   return at;
 }
 
+// The angle that reads back to the same radians: 15 for what was read as 15, and not
+// 14.999999999999998.
+double InDegrees(double radians) {
+  constexpr double kSteps = 1e9;  // a degree
+  const double degrees = RadiansToDegrees(radians);
+  const double rounded = std::round(degrees * kSteps) / kSteps;
+  return DegreesToRadians(rounded) == radians ? rounded : degrees;
+}
+
 // Writes a row per sample, with as many digits as read back to the same numbers: its directions,
 // and so many columns of values. Samples on a grid stand at the centres of its bins,
 // with phi_i = 0.
@@ -51,7 +61,7 @@ void WriteRows(
                                          ? FromIncidentPlane(samples.Angles(j))
                                          : samples.directions[j];
           for (const double angle : {at.theta_i, at.phi_i, at.theta_o, at.phi_o}) {
-            add(RadiansToDegrees(angle));
+            add(InDegrees(angle));
           }
           values(j, of_row);
           for (const double value : of_row) add(value);
