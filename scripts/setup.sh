@@ -16,6 +16,28 @@ die() {
   exit 1
 }
 
+# begin_setup, end_setup: one script at a time does what is between them in this folder, and others wait for it. Commands
+# inherit the lock, so that nobody builds beside a build whose script was killed. end_setup takes it from all that have
+# it, so that a daemon that one of them started does not keep it.
+begin_setup() {
+  command -v flock >/dev/null || return 0
+  mkdir -p build
+  exec {setup_lock}>build/setup.lock
+  trap end_setup EXIT
+  local status=0
+  flock --nonblock "$setup_lock" || status=$?
+  ((status == 1)) || return 0 # it is had, or the file system knows no locks
+  step "Waiting for another ./run or ./check, which sets up this folder"
+  flock "$setup_lock"
+}
+
+end_setup() {
+  [[ -n ${setup_lock-} ]] || return 0
+  flock --unlock "$setup_lock" || true
+  exec {setup_lock}>&-
+  setup_lock=''
+}
+
 # quietly NAME COMMAND...: runs COMMAND with its output in build/log/NAME.log, and shows the end of
 # that file only if COMMAND fails.
 quietly() {
