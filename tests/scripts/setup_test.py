@@ -10,10 +10,10 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def said(*lines):
-    """Messages of tell_progress while a build or a test prints these lines."""
+def said(*lines, passed_on=False):
+    """Messages of tell_progress while a build or a test prints these lines, or what it passes on of them."""
     script = ("source scripts/setup.sh; progress_seconds=0; "
-              "tell_progress printf '%s\\n' \"$@\" 3>&1 >/dev/null")
+              "tell_progress printf '%s\\n' \"$@\" " + ("3>/dev/null" if passed_on else "3>&1 >/dev/null"))
     return subprocess.run(["bash", "-c", script, "bash", *lines], cwd=ROOT, check=True,
                           capture_output=True, text=True).stdout
 
@@ -26,6 +26,12 @@ class Progress(unittest.TestCase):
     def test_of_tests_is_no_time(self):
         self.assertRegex(said("  1/20 Test  #7: faults ....   Passed   90.05 sec"),
                          r"^==> \[\d+:\d\d\] 1 of 20 done\n")
+
+    def test_of_packages_is_a_share(self):
+        of_apt = ["dlstatus:1:40.5:Retrieving file 1 of 2", "pmstatus:libfoo-dev:7.1429:Unpacking libfoo-dev (amd64)"]
+        self.assertRegex(said(of_apt[0]), r"^==> \[\d+:\d\d\] 40 % downloaded\n")
+        self.assertRegex(said(of_apt[1]), r"^==> \[\d+:\d\d\] 7 % installed\n")
+        self.assertEqual(said(of_apt[0], "Get:1 libfoo-dev", of_apt[1], passed_on=True), "Get:1 libfoo-dev\n")
 
 
 class Check(unittest.TestCase):
