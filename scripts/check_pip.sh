@@ -17,7 +17,12 @@ install() {
 }
 
 install evaluates ./python/evaluate
-install all . ./python/evaluate
+install all .
+# Whoever names both folders means the same two packages; and what is installed goes by version, not by folder.
+"$folder/all/bin/pip" install --quiet --disable-pip-version-check --dry-run . ./python/evaluate
+"$folder/all/bin/pip" check
+"$folder/all/bin/python" -c 'from importlib.metadata import requires, version
+assert "trilobe-evaluate==" + version("trilobe") in requires("trilobe"), requires("trilobe")'
 awk '/^```/ { inside = ($0 == "```python"); next } inside' README.md >"$folder/example.py"
 cd "$folder"
 all/bin/python example.py

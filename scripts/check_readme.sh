@@ -31,7 +31,10 @@ shorter() {
 }
 # Results of another time, or of an earlier version, may not be the program's to overwrite.
 commands README.md docs/commands.md docs/library.md docs/scene.md | grep -oP -- '--out=\Kout/[^ ]+' | xargs rm -rf
-commands README.md docs/commands.md docs/library.md | shorter | bash -euo pipefail -x
+{
+  commands README.md docs/commands.md docs/library.md
+  echo "trilobe --version" # which README.md has put into the PATH
+} | shorter | bash -euo pipefail -x
 commands docs/scene.md | bash -euo pipefail -x
 
 # The scene shows what a scene is for: its models are small, have lobes, and lose what they may.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks scripts/setup.sh: that it goes on where a dpkg was killed, and that a build is not silent
-# where there is no terminal.
+# Checks scripts/setup.sh: that it goes on where a dpkg was killed, that a build is not silent
+# where there is no terminal, and that two scripts do not set up one folder at the same time.
 #
 # Lets dpkg be killed while it configures a package, as by a lost connection, and checks that
 # setup_packages still installs it. The package is made here and goes into a folder of its own, which
@@ -100,3 +100,49 @@ END
   (slowly four "$ninja" 3) >"$root/told" 2>&1 && die "a build that fails is taken for one that does not"
   grep -qF "error: '$ninja 3' failed; all of its output is in $log_dir/four.log" "$root/told"
 )
+
+# The second script waits while the first sets up and for no longer, though the first runs on, and a daemon as well.
+mkdir -p "$root/checkout/scripts"
+cp scripts/setup.sh "$root/checkout/scripts"
+cat >"$root/checkout/script" <<'END'
+set -euo pipefail
+cd "$(dirname "$0")"
+source scripts/setup.sh
+begin_setup
+echo "$1 begins" >>order
+sleep 30 &
+daemon=$!
+trap 'kill "$daemon"' TERM
+until [[ $1 == second || -e go_on ]]; do sleep 0.05; done
+echo "$1 ends" >>order
+end_setup
+[[ $1 == second ]] || wait "$daemon" || true
+kill "$daemon" 2>/dev/null || true
+END
+# until_there TEXT FILE: waits for less than the daemon runs.
+until_there() {
+  for _ in {1..400}; do
+    if grep -qs "$1" "$2"; then return; fi
+    sleep 0.05
+  done
+  echo "no '$1' in $2" >&2
+  return 1
+}
+bash "$root/checkout/script" first >"$root/first" &
+first=$!
+until_there "first begins" "$root/checkout/order"
+bash "$root/checkout/script" second >"$root/second" &
+second=$!
+until_there "Waiting for another" "$root/second"
+touch "$root/checkout/go_on"
+until_there "second ends" "$root/checkout/order"
+wait "$second"
+kill "$first" # which still runs
+wait "$first" || true
+diff - "$root/checkout/order" <<'END'
+first begins
+first ends
+second begins
+second ends
+END
+[[ ! -s $root/first ]]

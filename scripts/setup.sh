@@ -16,6 +16,28 @@ die() {
   exit 1
 }
 
+# begin_setup, end_setup: one script at a time does what is between them in this folder, and others wait for it. Commands
+# inherit the lock, so that nobody builds beside a build whose script was killed. end_setup takes it from all that have
+# it, so that a daemon that one of them started does not keep it.
+begin_setup() {
+  command -v flock >/dev/null || return 0
+  mkdir -p build
+  exec {setup_lock}>build/setup.lock
+  trap end_setup EXIT
+  local status=0
+  flock --nonblock "$setup_lock" || status=$?
+  ((status == 1)) || return 0 # it is had, or the file system knows no locks
+  step "Waiting for another ./run or ./check, which sets up this folder"
+  flock "$setup_lock"
+}
+
+end_setup() {
+  [[ -n ${setup_lock-} ]] || return 0
+  flock --unlock "$setup_lock" || true
+  exec {setup_lock}>&-
+  setup_lock=''
+}
+
 # quietly NAME COMMAND...: runs COMMAND with its output in build/log/NAME.log, and shows the end of
 # that file only if COMMAND fails.
 quietly() {
@@ -39,27 +61,34 @@ slowly() {
 
 # tell_progress COMMAND...: passes on what COMMAND says, and tells file descriptor 3 how many of ninja's
 # steps ("[12/63] ...") or ctest's tests (" 12/63 Test ...") are done; and how long other steps take if they
-# take as long each, which tests do not: ctest starts with the longest.
+# take as long each, which tests do not: ctest starts with the longest. What apt says of its progress alone
+# ("dlstatus:2:40.5:..." of downloads, "pmstatus:cmake:30.1:..." of dpkg) is told and not passed on.
 tell_progress() {
-  local begin=$EPOCHSECONDS told=$EPOCHSECONDS line='' part status made=0 all=0 kind='' to_go
+  local begin=$EPOCHSECONDS told=$EPOCHSECONDS line='' part status made all kind='' far='' to_go
+  local -A apt=([dl]=downloaded [pm]=installed)
   "$@" 2>&1 | while true; do
     IFS= read -r -t 1 part && status=0 || status=$?
     line+=$part
     if ((status <= 128)); then # not for want of time: a line, or the end
       ((status == 0)) || [[ -n $line ]] || break
-      printf '%s\n' "$line"
-      if [[ $line =~ ^\ *\[?([0-9]+)/([0-9]+)(\]|\ Test\ ) ]]; then
-        made=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} kind=${BASH_REMATCH[3]}
+      if [[ $line =~ ^(dl|pm)status:[^:]*:([0-9]+) ]]; then
+        far="${BASH_REMATCH[2]} % ${apt[${BASH_REMATCH[1]}]}"
+      else
+        printf '%s\n' "$line"
+        if [[ $line =~ ^\ *\[?([0-9]+)/([0-9]+)(\]|\ Test\ ) ]] && ((BASH_REMATCH[1] > 0)); then
+          made=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} kind=${BASH_REMATCH[3]}
+          far="$made of $all done"
+        fi
       fi
       line=''
     fi
-    if ((made > 0 && EPOCHSECONDS - told >= progress_seconds)); then
+    if [[ -n $far ]] && ((EPOCHSECONDS - told >= progress_seconds)); then
       told=$EPOCHSECONDS
       to_go=''
       if [[ $kind == ']' ]]; then
         to_go="; at this pace $(duration $(((all - made) * (told - begin) / made))) to go"
       fi
-      step "$made of $all done$to_go" >&3
+      step "$far$to_go" >&3
     fi
   done
 }
@@ -84,7 +113,7 @@ is_installed() {
 # A dpkg that was killed while it worked wants to finish that before anything else, and package lists
 # may be absent or too old to match what the mirror has: both are set right only when it fails.
 apt_install() {
-  local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@")
+  local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 -o APT::Status-Fd=1 "$@")
   "${as_root[@]}" "${install[@]}" && return
   "${as_root[@]}" dpkg --configure -a || true
   "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"
@@ -121,7 +150,7 @@ install_packages() {
     as_root=(sudo env DEBIAN_FRONTEND=noninteractive)
   fi
   step "Installing Debian packages: ${missing[*]}"
-  quietly apt apt_install "${missing[@]}"
+  progress_seconds=5 slowly apt apt_install "${missing[@]}"
 }
 
 # configure PRESET [ARGUMENT...]: configures its folder.
