@@ -24,7 +24,7 @@ bool IsCommon(const std::string& flag) {
   return std::ranges::find(kCommon, flag) != std::end(kCommon);
 }
 
-// Where the further lines of a line begin that begins with a space.
+// Column in which the further lines of a line begin that begins with a space.
 size_t HangingIndent(const std::string& line) {
   constexpr size_t kFarthest = 24;
   const size_t begin = line.find_first_not_of(' ');

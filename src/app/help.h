@@ -7,11 +7,11 @@
 
 namespace trilobe {
 
-// What `trilobe help` prints, for the width of the terminal.
+// The text of `trilobe help`, for the width of the terminal.
 std::string HelpText();
 
-// What `trilobe help COMMAND` prints: the flags that most people want, and with `all` the others,
-// too, of which it names only the names otherwise.
+// The text of `trilobe help COMMAND`: the flags that most people want, and with `all` the others,
+// too, of which there are only the names otherwise.
 std::string HelpText(const Command& command, bool all);
 
 // "  --lobes=3" with its default, and a line on what it does.

@@ -139,7 +139,7 @@ InCommon AtCommonDirections(const Measurement& other, const Measurement& measure
   return common;
 }
 
-// What is compared with a measurement: a model, a table, or values at its samples.
+// One side of a comparison with a measurement: a model, a table, or values at its samples.
 struct Compared {
   std::optional<FactorModel> model = {};
   std::optional<BrdfTable> table = {};

@@ -12,7 +12,7 @@ namespace trilobe {
 // more each minute. --quiet prints none of this. For the whole process, from any thread.
 class Status {
  public:
-  // What is going on until the next stage: "comparing with the measurement".
+  // Begins a stage, which goes on until the next: "comparing with the measurement".
   static void Stage(const std::string& what);
   // More of the stage that goes on, on a terminal alone: "iteration 3 ...".
   static void Show(const std::string& text);

@@ -157,7 +157,7 @@ class Fitting {
                         .stop = options_.stop});
   }
 
-  // Where the default nodes leave an error that is seen, finer ones are tried. They are taken while
+  // If the default nodes leave an error that is seen, finer ones are tried. They are taken while
   // E of directions held out falls by a seventh.
   void Refine(const std::optional<SyntheticPrior>& prior, SolvedForm* form, FitResult* fit) {
     constexpr double kSeen = 0.01;  // E over a black model's
