@@ -18,6 +18,8 @@ if(TRILOBE_BUILD_APP)
     set_target_properties(trilobe_app PROPERTIES INSTALL_RPATH "$ORIGIN/${library_dir}")
   endif()
   install(TARGETS trilobe_app)
+  install(FILES ${PROJECT_SOURCE_DIR}/scripts/trilobe.bash
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME trilobe)
 endif()
 
 configure_package_config_file(cmake/trilobe-config.cmake.in trilobe-config.cmake
