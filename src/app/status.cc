@@ -66,8 +66,9 @@ class Teller {
     shown_ = {};
     is_told_ = false;
     if (on_terminal_) Draw(what_);
-    if (!ticker_.joinable())
+    if (!ticker_.joinable()) {
       ticker_ = std::jthread([this](const std::stop_token& stop) { Tick(stop); });
+    }
     changed_.notify_all();
   }
 
@@ -115,8 +116,9 @@ class Teller {
       const Clock::time_point now = Clock::now();
       const auto passed = std::chrono::duration_cast<seconds>(now - began_).count();
       if (on_terminal_) {
-        if (passed > 0 && now - shown_ > kFresh)
+        if (passed > 0 && now - shown_ > kFresh) {
           Draw(what_ + "   " + std::to_string(passed) + " s");
+        }
       } else if (now - told_ > (is_told_ ? kRepeat : kSilence)) {
         std::fprintf(stderr, "trilobe: %s%s\n", what_.c_str(),
                      is_told_ ? (", " + std::to_string(passed) + " s").c_str() : "");
