@@ -102,7 +102,7 @@ BrdfSamples EveryOther(const BrdfSamples& samples, const std::vector<int>& incid
 // highlight, both halves guess the rest alike; where a half is one incidence, it knows much less.
 double HalvesOff(const BrdfSamples& samples, const std::vector<int>& incidences) {
   if (std::ranges::max(incidences) == 1) return 2.25;
-  return ShowsMoreThanHighlight(samples) ? 1.5 : 1;
+  return ShowsMoreThanHighlight(samples) ? 1.25 : 1;
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ WholeSphere EstimateWholeOfNodes(const NodeBrdf& measured, const FactorModel& mo
                                  const SeenError& seen, const AppearanceOptions& options);
 
 // The same for an isotropic fit to scattered samples. It is fitted anew to every other incidence
-// (of 10 degrees if there are many), and to the rest. It differs from these halves by about one and
-// a half times what it is off by itself: by less where all samples are of the highlight,
+// (of 10 degrees if there are many), and to the rest. It differs from these halves by about a
+// quarter more than it is off by itself: by less where all samples are of the highlight,
 // and by more where there are two incidences. Nothing if next to all was measured by no fewer
 // samples than `parameters`, for fewer than 32 samples, and for a single incidence. `fit_to`: a
 // model of the same spec, fitted to given samples as `model` was to all.

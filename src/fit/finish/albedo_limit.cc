@@ -201,14 +201,25 @@ bool LowerG(const AlbedoLimits& limits, double from, const FactorAtNode& at_node
   const std::vector<double>& angles = limits.theta_i;
   const size_t first_beyond =
       std::ranges::upper_bound(angles, limits.beyond_theta) - angles.begin();
+  const auto limit_of = [&](size_t k) -> const Rgb& {
+    return k >= first_beyond ? limits.beyond[k] : limits.everywhere;
+  };
+  // Most angles are far within their limits, as a quick look tells.
   const auto factors_at = [&](std::span<const size_t> numbers) {
-    std::vector<double> theta_i, factors;
-    for (const size_t k : numbers) theta_i.push_back(angles[k]);
-    const std::vector<Rgb> albedos = AlbedosOf(*model, theta_i, num_threads);
+    std::vector<PolarAngles> at;
+    for (const size_t k : numbers) at.push_back({angles[k], 0});
+    const std::vector<Rgb> quick = QuickAlbedos(at, *model, num_threads);
+    std::vector<size_t> near;
+    std::vector<double> theta_i;
     for (size_t j = 0; j < numbers.size(); ++j) {
-      const bool is_beyond = numbers[j] >= first_beyond;
-      const Rgb& limit = is_beyond ? limits.beyond[numbers[j]] : limits.everywhere;
-      factors.push_back(FactorOfG(albedos[j], limit, model->d()));
+      if (!(ExcessOf(quick[j], limit_of(numbers[j])) > 1 - kQuickError)) continue;
+      near.push_back(j);
+      theta_i.push_back(angles[numbers[j]]);
+    }
+    const std::vector<Rgb> albedos = AlbedosOf(*model, theta_i, num_threads);
+    std::vector<double> factors(numbers.size(), 1.0);
+    for (size_t k = 0; k < near.size(); ++k) {
+      factors[near[k]] = FactorOfG(albedos[k], limit_of(numbers[near[k]]), model->d());
     }
     return factors;
   };

@@ -50,16 +50,6 @@ Rgb QuickAlbedo(const PreparedModel<double>& prepared, bool anisotropic, const P
   return albedo;
 }
 
-std::vector<Rgb> QuickAlbedos(const std::vector<PolarAngles>& at, const FactorModel& model,
-                              int num_threads) {
-  const PreparedModel<double> prepared(model);
-  const bool anisotropic = model.spec().anisotropic();
-  std::vector<Rgb> albedos(at.size());
-  ParallelFor(static_cast<int>(at.size()), num_threads,
-              [&](int k) { albedos[k] = QuickAlbedo(prepared, anisotropic, at[k]); });
-  return albedos;
-}
-
 // G_m(theta, phi) / cos theta, of each lobe and channel.
 double ShadowingAt(const FactorModel& model, const PolarAngles& at, int lobe, int channel) {
   return model.spec().g_axis.At(at.theta, at.phi)(model.G(lobe, channel)) / std::cos(at.theta);
@@ -171,6 +161,16 @@ std::vector<PolarAngles> AllThetas() {
 
 }  // namespace
 
+std::vector<Rgb> QuickAlbedos(const std::vector<PolarAngles>& at, const FactorModel& model,
+                              int num_threads) {
+  const PreparedModel<double> prepared(model);
+  const bool anisotropic = model.spec().anisotropic();
+  std::vector<Rgb> albedos(at.size());
+  ParallelFor(static_cast<int>(at.size()), num_threads,
+              [&](int k) { albedos[k] = QuickAlbedo(prepared, anisotropic, at[k]); });
+  return albedos;
+}
+
 std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
                              int num_threads) {
   const PreparedModel<double> prepared(model);
@@ -196,8 +196,8 @@ double ExcessOf(const Rgb& albedo, const Rgb& limit) {
 
 std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& model,
                                        int num_threads) {
-  constexpr double kNear = 0.98, kNearByLobes = 0.95;  // what a quick look may be off by
-  constexpr size_t kMost = 180;                        // of which each is costly
+  constexpr double kNear = 1 - kQuickError, kNearByLobes = 0.95;
+  constexpr size_t kMost = 180;  // of which each is costly
   std::vector<PolarAngles> near_by_lobes = AllThetas();
   if (model.spec().anisotropic()) {
     near_by_lobes.clear();
