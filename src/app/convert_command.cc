@@ -15,6 +15,7 @@
 #include "app/inputs.h"
 #include "app/program.h"
 #include "app/result_folder.h"
+#include "app/status.h"
 #include "core/files/file.h"
 #include "fit/reports/print.h"
 #include "io/formats/databases/utia_file.h"
@@ -24,6 +25,7 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/export/convert.h"
+#include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/corruption.h"
@@ -140,6 +142,20 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
   return measurement;
 }
 
+// A table of scattered samples, which have no bins: of the model that a fit makes of them. Says so.
+Measurement TableByWayOfAFit(const Measurement& scattered, int num_threads) {
+  FitOptions options;
+  options.compare = false;
+  options.num_threads = num_threads;
+  options.on_stage = Status::Stage;
+  const FitResult fit = Fit(scattered, options);
+  if (fit.model().spec().anisotropic()) TableOf(scattered);  // its error
+  PrintLine("fitted " + scattered.source + " by " + std::to_string(fit.stored_parameters) +
+            " parameters, as samples have no bins: all values of the table are the model's; "
+            "`trilobe fit` says how good it is");
+  return AsMeasurement(fit.model(), scattered.source, num_threads, kUtiaGrid);
+}
+
 std::string NotSpectral(const std::string& source) {
   return "--spectral goes with an --out that ends in .bsdf, or in .csv of what has wavelengths, "
          "and " +
@@ -241,8 +257,11 @@ int RunConvert(std::span<const std::string> arguments) {
     WriteMeasuredSpectra(source, options);
     return 0;
   }
-  const Measurement measurement = MeasurementOf(source, out, options);
+  Measurement measurement = MeasurementOf(source, out, options);
   PrintNotes(measurement);
+  if (!measurement.table && !WritableFormat(out).holds_anisotropic) {
+    measurement = TableByWayOfAFit(measurement, options.num_threads);
+  }
   const std::string written = ReplaceMeasurement(measurement, out, options.num_threads);
   PrintLine("wrote " + out + ": " + written);
   return 0;
@@ -266,7 +285,8 @@ Command ConvertCommand() {
           "elsewhere bins are marked invalid. An\nanisotropic model is evaluated at the "
           "directions of the UTIA database, for a .bin or .csv file. With --max_angle "
           "or\n--min_theta_d, bins beyond them are marked invalid, too, whatever the input. "
-          "Scattered samples have no bins: that is an error.\nTo a FILE that ends in .csv it "
+          "Scattered samples have no bins: a table of them is that of a fitted model.\nTo a FILE "
+          "that ends in .csv it "
           "writes the valid samples, scattered ones too, a row each, with all their\ndigits; a "
           "whole table takes some 130 MB. To a FILE that ends in .bin it writes the input at "
           "the\ndirections of the UTIA database, -1 where it was not measured; scattered samples "

@@ -502,12 +502,20 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   EXPECT_NEAR(lambertian["max"][2].get<double>(), 0.3, 1e-12);
 }
 
-TEST(ConvertTest, ScatteredSamplesHaveNoBins) {
+TEST(ConvertTest, OfScatteredSamplesATableIsThatOfAModel) {
+  const TemporaryFolder folder;
+  const std::string satin = InRepository("docs/goniometer.csv"), table = folder / "y.binary";
+  const ProgramResult made = RunProgram({"convert", satin, "--out=" + table});
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("all values of the table are the model's"));
+  EXPECT_EQ(RunProgram({"fit", satin, "--out=" + (folder / "fit")}).status, 0);
+  const ProgramResult score = RunProgram({"score", folder / "fit/model.json", table, "--json"});
+  EXPECT_LT(json::parse(score.out)["relative_objective"], 1e-20) << score.err;
+}
+
+TEST(ConvertTest, KeepsScatteredSamples) {
   const TemporaryFolder folder;
   Write(folder / "x.csv", kCsv);
-  ExpectError(RunProgram({"convert", folder / "x.csv", "--out=" + (folder / "y.binary")}),
-              "x.csv: this command needs a table on the MERL grid, and this is a CSV file");
-  EXPECT_FALSE(std::filesystem::exists(folder / "y.binary"));
   ExpectError(RunProgram({"convert", folder / "x.csv", "--out=" + (folder / "x.csv")}), "x.csv");
   EXPECT_EQ(Contents(folder / "x.csv"), kCsv);
   ExpectError(RunProgram({"score", folder / "x.csv", "synth:felt@30x30x60"}),
