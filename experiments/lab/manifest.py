@@ -8,11 +8,18 @@ time.
 import datetime
 import json
 import pathlib
+import re
 
 from lab import UsageError, machine
 
 
 FORMS = ("quick", "anisotropic")  # beside the full one
+_LIST = re.compile(r"\[\s+([^\[\]{}]*?)\s+\]")
+
+
+def _text(run):
+    """JSON with an entry a line, and lists of numbers and words in one."""
+    return _LIST.sub(lambda found: "[" + re.sub(r",\s*\n\s*", ", ", found[1]) + "]", json.dumps(run, indent=1)) + "\n"
 
 
 def load(path, form="full", changes=()):
@@ -73,4 +80,4 @@ def write_run(path, setting, store, units, build):
            "tabulated_at": machine.revision(),
            "versions": machine.versions(build),
            "date": datetime.date.today().isoformat()}
-    path.write_text(json.dumps(run, indent=1) + "\n")
+    path.write_text(_text(run))
