@@ -37,8 +37,8 @@ std::string Percent(double share) { return Text(100 * share, 3) + " %"; }
 
 bool ChoosesAzimuths(const Measurement& measurement, const FitOptions& options) {
   const FormOptions& form = options.form;
-  const bool nodes_given = form.d_nodes || form.f_bins || form.g_nodes ||
-                           form.nodes != FormOptions::NodeRule::kFinerWhereSeen;
+  const bool nodes_given =
+      form.d_nodes || form.f_bins || form.g_nodes || form.nodes == FormOptions::NodeRule::kHeldOut;
   return !measurement.table && measurement.anisotropic && !measurement.azimuths_matter &&
          form.kind == FormOptions::Kind::kShared && !nodes_given && !options.start_model;
 }

@@ -83,6 +83,17 @@ TEST(Azimuths, MatterWhereTurnsDifferByLittleButSmoothly) {
   }
 }
 
+// To keep the default nodes is no wish for an anisotropic model, but nodes of one are.
+TEST(Azimuths, AreChosenWhateverRuleNodesHaveButByHeldOutDirections) {
+  using NodeRule = FormOptions::NodeRule;
+  const Measurement cloth = Scattered("linen", 100);
+  FitOptions options;
+  for (const NodeRule rule : {NodeRule::kFinerWhereSeen, NodeRule::kGiven, NodeRule::kHeldOut}) {
+    options.form.nodes = rule;
+    EXPECT_EQ(ChoosesAzimuths(cloth, options), rule != NodeRule::kHeldOut);
+  }
+}
+
 TEST(Azimuths, OfFewSamplesDoNotMakeAnAnisotropicModel) {
   const Measurement few = Scattered("charmeuse", 300);
   const FitResult fit = FitShortly(few);
