@@ -206,20 +206,15 @@ bool LowerG(const AlbedoLimits& limits, double from, const FactorAtNode& at_node
   };
   // Most angles are far within their limits, as a quick look tells.
   const auto factors_at = [&](std::span<const size_t> numbers) {
-    std::vector<PolarAngles> at;
-    for (const size_t k : numbers) at.push_back({angles[k], 0});
-    const std::vector<Rgb> quick = QuickAlbedos(at, *model, num_threads);
-    std::vector<size_t> near;
+    std::vector<LightBound> bounds;
+    for (const size_t k : numbers) bounds.push_back({{angles[k], 0}, limit_of(k)});
+    const std::vector<size_t> near = MayExceed(bounds, 1, *model, num_threads);
     std::vector<double> theta_i;
-    for (size_t j = 0; j < numbers.size(); ++j) {
-      if (!(ExcessOf(quick[j], limit_of(numbers[j])) > 1 - kQuickError)) continue;
-      near.push_back(j);
-      theta_i.push_back(angles[numbers[j]]);
-    }
+    for (const size_t j : near) theta_i.push_back(angles[numbers[j]]);
     const std::vector<Rgb> albedos = AlbedosOf(*model, theta_i, num_threads);
     std::vector<double> factors(numbers.size(), 1.0);
     for (size_t k = 0; k < near.size(); ++k) {
-      factors[near[k]] = FactorOfG(albedos[k], limit_of(numbers[near[k]]), model->d());
+      factors[near[k]] = FactorOfG(albedos[k], bounds[near[k]].limit, model->d());
     }
     return factors;
   };

@@ -161,16 +161,6 @@ std::vector<PolarAngles> AllThetas() {
 
 }  // namespace
 
-std::vector<Rgb> QuickAlbedos(const std::vector<PolarAngles>& at, const FactorModel& model,
-                              int num_threads) {
-  const PreparedModel<double> prepared(model);
-  const bool anisotropic = model.spec().anisotropic();
-  std::vector<Rgb> albedos(at.size());
-  ParallelFor(static_cast<int>(at.size()), num_threads,
-              [&](int k) { albedos[k] = QuickAlbedo(prepared, anisotropic, at[k]); });
-  return albedos;
-}
-
 std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
                              int num_threads) {
   const PreparedModel<double> prepared(model);
@@ -194,9 +184,24 @@ double ExcessOf(const Rgb& albedo, const Rgb& limit) {
   return excess;
 }
 
+std::vector<size_t> MayExceed(const std::vector<LightBound>& bounds, double by,
+                              const FactorModel& model, int num_threads) {
+  constexpr double kQuickError = 0.02;
+  const PreparedModel<double> prepared(model);
+  const bool anisotropic = model.spec().anisotropic();
+  std::vector<Rgb> quick(bounds.size());
+  ParallelFor(static_cast<int>(bounds.size()), num_threads,
+              [&](int k) { quick[k] = QuickAlbedo(prepared, anisotropic, bounds[k].at); });
+  std::vector<size_t> near;
+  for (size_t k = 0; k < bounds.size(); ++k) {
+    if (ExcessOf(quick[k], bounds[k].limit) > (1 - kQuickError) * by) near.push_back(k);
+  }
+  return near;
+}
+
 std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& model,
                                        int num_threads) {
-  constexpr double kNear = 1 - kQuickError, kNearByLobes = 0.95;
+  constexpr double kNearByLobes = 0.95;
   constexpr size_t kMost = 180;  // of which each is costly
   std::vector<PolarAngles> near_by_lobes = AllThetas();
   if (model.spec().anisotropic()) {
@@ -207,13 +212,11 @@ std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& mode
   }
   const size_t parts = (near_by_lobes.size() + kMost - 1) / kMost;
   for (size_t part = 0; part < parts; ++part) {
-    std::vector<PolarAngles> some;
-    for (size_t k = part; k < near_by_lobes.size(); k += parts) some.push_back(near_by_lobes[k]);
-    const std::vector<Rgb> quick = QuickAlbedos(some, model, num_threads);
-    std::vector<LightBound> near, exceeded;
-    for (size_t k = 0; k < some.size(); ++k) {
-      if (ExcessOf(quick[k], limit) > kNear) near.push_back({some[k], limit});
+    std::vector<LightBound> some, near, exceeded;
+    for (size_t k = part; k < near_by_lobes.size(); k += parts) {
+      some.push_back({near_by_lobes[k], limit});
     }
+    for (const size_t k : MayExceed(some, 1, model, num_threads)) near.push_back(some[k]);
     const std::vector<Rgb> albedos = AlbedosFrom(near, model, num_threads);
     for (size_t k = 0; k < near.size(); ++k) {
       if (ExcessOf(albedos[k], limit) > 1 + kLightTolerance) exceeded.push_back(near[k]);

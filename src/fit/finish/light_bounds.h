@@ -1,6 +1,7 @@
 #ifndef TRILOBE_FIT_FINISH_LIGHT_BOUNDS_H_
 #define TRILOBE_FIT_FINISH_LIGHT_BOUNDS_H_
 
+#include <cstddef>
 #include <vector>
 
 #include "trilobe/core/base/channels.h"
@@ -25,16 +26,14 @@ struct PeakAlbedo {
 std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const FactorModel& model,
                              int num_threads);
 
-// The same by a fifth of the half planes, and so in a fifth of the time; off by less than
-// kQuickError.
-inline constexpr double kQuickError = 0.02;
-std::vector<Rgb> QuickAlbedos(const std::vector<PolarAngles>& at, const FactorModel& model,
-                              int num_threads);
-
 // By how much an albedo exceeds its limit at most: A / limit over the channels. Up to
 // 1 + kLightTolerance it keeps to it.
 inline constexpr double kLightTolerance = 1e-3;
 double ExcessOf(const Rgb& albedo, const Rgb& limit);
+
+// Which of these bounds a model may exceed by more than `by`, at a quick look. Ascending.
+std::vector<size_t> MayExceed(const std::vector<LightBound>& bounds, double by,
+                              const FactorModel& model, int num_threads);
 
 // Each half degree of theta up to 89.5 degrees and, of an anisotropic model, each 5 degrees of
 // azimuth where its directional albedo exceeds the limit, or some of many. All are looked at

@@ -120,18 +120,11 @@ bool LightLimit::GlowsBeyond(const FactorModel& model) const {
     const double theta = isotropic_->theta_i[k];
     if (theta > isotropic_->beyond_theta) beyond.push_back({{theta, 0}, isotropic_->beyond[k]});
   }
-  std::vector<PolarAngles> at;
-  for (const LightBound& bound : beyond) at.push_back(bound.at);
-  const std::vector<Rgb> quick = QuickAlbedos(at, model, num_threads_);
-  const auto is_far = [&](const LightBound& bound) {
-    return ExcessOf(quick[&bound - beyond.data()], bound.limit) < (1 - kQuickError) * kSeen;
-  };
   std::vector<LightBound> near;
-  std::ranges::remove_copy_if(beyond, std::back_inserter(near), is_far);
-  beyond = std::move(near);
-  const std::vector<Rgb> albedos = AlbedosFrom(beyond, model, num_threads_);
-  for (size_t k = 0; k < beyond.size(); ++k) {
-    if (ExcessOf(albedos[k], beyond[k].limit) > kSeen) return true;
+  for (const size_t k : MayExceed(beyond, kSeen, model, num_threads_)) near.push_back(beyond[k]);
+  const std::vector<Rgb> albedos = AlbedosFrom(near, model, num_threads_);
+  for (size_t k = 0; k < near.size(); ++k) {
+    if (ExcessOf(albedos[k], near[k].limit) > kSeen) return true;
   }
   return false;
 }

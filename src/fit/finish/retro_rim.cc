@@ -28,11 +28,11 @@ class RetroLight {
       theta_.push_back(kFirst + k * DegreesToRadians(0.5));
       if (theta_.back() > kLast) break;
     }
-    end_ = EndOf(data.samples());
     limit_ = OfSamples(data.samples());
     if (std::ranges::max(limit_) == 0) {
+      const double end = EndOf(data.samples());
       const std::vector<Rgb> r = Of(model);
-      for (size_t k = 0; k < r.size() && theta_[k] <= end_; ++k) {
+      for (size_t k = 0; k < r.size() && theta_[k] <= end; ++k) {
         for (int c = 0; c < kChannels; ++c) limit_[c] = std::max(limit_[c], r[k][c]);
       }
     }
@@ -40,7 +40,6 @@ class RetroLight {
   }
 
   const std::vector<double>& theta() const { return theta_; }
-  double end() const { return end_; }  // of the data [rad]
 
   std::vector<Rgb> Of(const FactorModel& model) const {
     const PreparedModel<double> prepared(model);
@@ -107,9 +106,18 @@ class RetroLight {
   }
 
   std::vector<double> theta_;  // [rad]
-  double end_ = 0;
   Rgb limit_{};
 };
+
+// Whether the data go on to the horizon. A whole table tells so by its first samples.
+bool ReachHorizon(const BrdfSamples& samples) {
+  const double least = std::cos(kHorizon);
+  for (int j = 0; j < samples.size(); ++j) {
+    const Cosines cosines = samples.CosinesOf(j);
+    if (std::min(cosines.i, cosines.o) < least) return true;
+  }
+  return false;
+}
 
 RetroRim RimOf(const RetroLight& light, const std::vector<Rgb>& r) {
   RetroRim rim;
@@ -149,9 +157,10 @@ std::optional<FactorModel> WithoutRetroRim(
   constexpr int kPasses = 12, kByOwnBin = 6;
   const ModelSpec& spec = model.spec();
   if (spec.anisotropic()) return std::nullopt;
+  if (ReachHorizon(data.samples())) return std::nullopt;
   const RetroLight light(data, model);
   std::vector<Rgb> r = light.Of(model);
-  if (light.end() > kHorizon || !RimOf(light, r).is_seen()) return std::nullopt;
+  if (!RimOf(light, r).is_seen()) return std::nullopt;
   FactorModel dimmed = model;
   for (int pass = 0; pass < kPasses && !stop(); ++pass) {
     std::vector<double> factors;
