@@ -14,8 +14,8 @@ struct Command {
   std::string name;
   std::string summary;    // one line for `trilobe help`
   std::string arguments;  // "SOURCE", "MODEL SOURCE", ...
-  std::string doing =
-      {};  // what goes on while it runs (Status): "comparing"; "" if it tells itself
+  // What goes on while it runs (Status): "comparing"; empty if it tells itself.
+  std::string doing = {};
   int min_arguments = 0;
   int max_arguments = 0;
   std::string details;             // text for `trilobe help NAME`: what it reads, does and writes

@@ -197,22 +197,24 @@ int RunScore(std::span<const std::string> arguments) {
   PrintNotes(measured);
   const ModelSpec spec = compared.SpecFor(common.samples);
   const Objective objective(std::move(common.samples), spec, weighting, threads);
-  if (compared.model) {
+  std::optional<Material> fitted;
+  if (compared.is_material()) fitted = compared.material();
+  if (compared.model && pictured.empty()) {
     common.others = EvaluateSamples(*compared.model, objective.samples(), threads);
   } else if (compared.table) {
-    common.others = ValuesAt(compared.material().angular, objective.samples());
+    common.others = ValuesAt(fitted->angular, objective.samples());
   }
   Scored scored{.model = arguments[0],
                 .score = compared.model ? ScoreModel(objective, *compared.model)
                                         : ScoreValues(objective, common.others)};
   std::optional<SeenError> seen;
-  if (!compared.is_material()) {
+  if (!fitted) {
     seen = CompareSamples(objective.samples(), common.others);
   } else if (pictured.empty()) {
-    seen = CompareSampledSphere(objective.samples(), common.others, compared.material().spherical,
+    seen = CompareSampledSphere(objective.samples(), common.others, fitted->spherical,
                                 measured.anisotropic, appearance_options);
   } else {
-    scored.appearance = CompareAppearance(pictured, compared.material(), appearance_options);
+    scored.appearance = CompareAppearance(pictured, *fitted, appearance_options);
   }
   scored.verdict = MakeVerdict(scored.appearance, seen, BasisOf(objective.samples(), 0),
                                {.irreducible = IrreducibleShare(scored.score)});
@@ -226,7 +228,7 @@ int RunScore(std::span<const std::string> arguments) {
     }
   }
   if (!FLAGS_out.empty()) {
-    WriteSpherePair(pictured, compared.material(), FLAGS_out, appearance_options);
+    WriteSpherePair(pictured, *fitted, FLAGS_out, appearance_options);
   }
   return 0;
 }
@@ -243,8 +245,7 @@ Command ScoreCommand() {
       .max_arguments = 2,
       .details =
           "The second one is taken for the truth. Two lists of scattered samples are compared at "
-          "the "
-          "directions that both have. "
+          "the directions that both have. "
           "Prints what a person would see, and what that rests on. With --verbose also the "
           "objective "
           "E under\n--weighting, and errors that know no weights: RMSE; PSNR over the largest "
