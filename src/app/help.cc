@@ -1,7 +1,6 @@
 #include "app/help.h"
 
 #include <gflags/gflags.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/status.h"
 #include "core/base/text.h"
 
 namespace trilobe {
@@ -83,9 +83,7 @@ std::string Wrapped(const std::string& text, int width) {
 
 int OutputWidth() {
   constexpr int kLeast = 40, kMost = 100;
-  winsize size{};
-  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return kMost;
-  return size.ws_col > 0 ? std::clamp<int>(size.ws_col, kLeast, kMost) : kMost;
+  return std::clamp(TerminalColumns(STDOUT_FILENO).value_or(kMost), kLeast, kMost);
 }
 
 std::string FlagHelp(const std::string& flag) {

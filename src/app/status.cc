@@ -35,11 +35,9 @@ bool IsSet(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-// Columns of standard error.
 size_t ErrorWidth() {
-  constexpr size_t kUsual = 80;
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+  constexpr int kUsual = 80;
+  return static_cast<size_t>(TerminalColumns(STDERR_FILENO).value_or(kUsual));
 }
 
 // Cut so that it leaves the last column free, as a terminal may wrap there.
@@ -149,6 +147,12 @@ class Teller {
 };
 
 }  // namespace
+
+std::optional<int> TerminalColumns(int descriptor) {
+  winsize size{};
+  if (ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return std::nullopt;
+  return size.ws_col;
+}
 
 // Hands on to the buffer of a stream.
 class LineClearing::Buffer : public std::streambuf {

@@ -2,6 +2,7 @@
 #define TRILOBE_APP_STATUS_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace trilobe {
@@ -24,6 +25,9 @@ class Status {
   // Whether lines are drawn over.
   static bool OnTerminal();
 };
+
+// Columns of the terminal that a stream is, which has this descriptor; nothing of another file.
+std::optional<int> TerminalColumns(int descriptor);
 
 // A stage that ends with its scope.
 class StageScope {
