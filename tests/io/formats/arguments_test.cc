@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/databases/merl_file.h"
 #include "io/formats/databases/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "io/pictures/plots.h"
@@ -107,8 +106,6 @@ TEST(Arguments, GridsAndPictures) {
     EXPECT_THAT(ErrorOf([&] { AtNodes(Source("x.csv", kCsv).Read(), bad, 1); }),
                 IsError(ErrorKind::kRange, {.key = "grid of directions"}));
   }
-  EXPECT_THAT(ErrorOf([] { ParseMerl("", "x.binary", {.theta_h = 0}); }),
-              IsError(ErrorKind::kRange, {.key = "grid of bins"}));
   EXPECT_THAT(ErrorOf([] { Synthesize(SynthMaterial(), 0, 1, {}, 1); }),
               IsError(ErrorKind::kMissing, {.key = "brdf"}));
   EXPECT_THAT(ErrorOf([] { WritePng("x.png", 2, 2, "short"); }),

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -15,6 +17,7 @@
 #include "tests/error_of.h"
 #include "tests/test_directory.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/brdf_table.h"
 
@@ -66,20 +69,77 @@ TEST(MerlFile, PutsPlanesAndBinsWhereTheFormatSays) {
   EXPECT_LT(table.Value(0, index + 1), 0);
 }
 
-TEST(MerlFile, ReadsAnotherGridIfToldSo) {
-  const MerlGrid grid{.theta_h = 1, .theta_d = 2, .phi_d = 3};
-  std::string bytes = Header(1, 2, 3);
-  for (int k = 0; k < 18; ++k) {
-    const double value = k;
-    bytes.append(reinterpret_cast<const char*>(&value), 8);
+constexpr MerlGrid kSmall{.theta_h = 5, .theta_d = 4, .phi_d = 8};
+
+// A file of this grid; the value of a channel and a bin is that of `value`.
+template <typename Number, typename Value>
+std::string SmallFile(const MerlGrid& grid, const Value& value) {
+  std::string bytes = Header(grid.theta_h, grid.theta_d, grid.phi_d);
+  for (int c = 0; c < 3; ++c) {
+    for (int bin = 0; bin < grid.size(); ++bin) {
+      const auto number = static_cast<Number>(value(c, bin));
+      bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+    }
   }
-  const BrdfTable table = ParseMerl(bytes, "tiny", grid);
-  EXPECT_EQ(table.grid, grid);
-  EXPECT_THAT(table.stored[1], ElementsAre(6, 7, 8, 9, 10, 11));
-  EXPECT_THAT(ErrorOf([&] { ParseMerl(bytes + "x", "tiny", grid); }),
-              IsError(ErrorKind::kFormat, {.key = "bytes", .value = "157"}));
-  EXPECT_THAT(ParseError(bytes),
-              IsError(ErrorKind::kFormat, {.key = "bins", .value = "1 x 2 x 3"}));
+  return bytes;
+}
+
+double Counted(int channel, int bin) { return 1000 * channel + bin % 97 + 0.5; }
+
+void ReverseNumbers(size_t begin, size_t size, std::string* bytes) {
+  for (size_t at = begin; at < bytes->size(); at += size) {
+    std::reverse(bytes->begin() + static_cast<std::ptrdiff_t>(at),
+                 bytes->begin() + static_cast<std::ptrdiff_t>(at + size));
+  }
+}
+
+TEST(MerlFile, ReadsTheBinsThatTheHeaderSays) {
+  const std::string bytes = SmallFile<double>(kSmall, Counted);
+  const Measurement measurement = Source("tiny", bytes).Read();
+  ASSERT_TRUE(measurement.table);
+  EXPECT_EQ(measurement.table->grid, kSmall);
+  EXPECT_EQ(measurement.table->stored[1][7], Counted(1, 7));
+  EXPECT_THAT(measurement.notes, testing::Contains("read as: 5 x 4 x 8 bins"));
+  EXPECT_THAT(ParseError(bytes + "x"),
+              IsError(ErrorKind::kFormat, {.key = "bins", .value = "5 x 4 x 8"}));
+}
+
+TEST(MerlFile, ReadsSmallNumbersAndThoseOfOtherMachines) {
+  const BrdfTable usual = ParseMerl(SmallFile<double>(kSmall, Counted), "tiny");
+  std::string bytes = SmallFile<float>(kSmall, Counted);
+  EXPECT_EQ(ParseMerl(bytes, "tiny").stored, usual.stored);
+  ReverseNumbers(0, 4, &bytes);
+  EXPECT_EQ(ParseMerl(bytes, "tiny").stored, usual.stored);
+  EXPECT_THAT(Source("tiny", bytes).Read().notes,
+              testing::Contains("read as: 5 x 4 x 8 bins, float32, big-endian numbers"));
+  bytes = SmallFile<double>(kSmall, Counted);
+  ReverseNumbers(0, 4, &bytes);  // swaps halves of the float64, too
+  for (size_t at = 12; at < bytes.size(); at += 8) {
+    std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(at + 4),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(at + 4));
+  }
+  EXPECT_EQ(ParseMerl(bytes, "tiny").stored, usual.stored);
+}
+
+TEST(MerlFile, FoldsAFullCircleOfPhiD) {
+  MerlGrid round = kSmall;
+  round.phi_d *= 2;
+  const auto at_half = [&](int c, int bin) {
+    const int row = bin / round.phi_d, p = bin % round.phi_d % kSmall.phi_d;
+    return Counted(c, kSmall.phi_d * row + p);
+  };
+  const auto unlike = [&](int c, int bin) {  // the exchanged one is 0.2 brighter
+    return at_half(c, bin) + (bin % round.phi_d < kSmall.phi_d ? 0 : 0.2);
+  };
+  const BrdfTable half = ParseMerl(SmallFile<double>(kSmall, Counted), "tiny");
+  EXPECT_EQ(ParseMerl(SmallFile<double>(round, at_half), "tiny").stored, half.stored);
+  const BrdfTable mean = ParseMerl(SmallFile<double>(round, unlike), "tiny");
+  EXPECT_EQ(mean.grid, kSmall);
+  EXPECT_NEAR(mean.stored[2][17], half.stored[2][17] + 0.1, 1e-12);
+  // Finer bins of half a circle are no full one.
+  const auto finer = [&](int c, int bin) { return at_half(c, bin) + 40 * (bin % round.phi_d); };
+  EXPECT_EQ(ParseMerl(SmallFile<double>(round, finer), "tiny").grid, round);
 }
 
 TEST(MerlFile, KeepsEveryBit) {
@@ -134,6 +194,8 @@ TEST(MerlFile, RefusesOtherDimensions) {
   const std::string body(24, '\0');
   EXPECT_THAT(ParseError(Header(90, 90, 360) + body),
               IsError(ErrorKind::kFormat, {.key = "bins", .value = "90 x 90 x 360"}));
+  EXPECT_THAT(ParseError(Header(1, 2, 3) + std::string(144, '\0')),
+              IsError(ErrorKind::kFormat, {.key = "bins", .value = "1 x 2 x 3"}));
   EXPECT_THAT(ParseError(Header(0, 0, 0)),
               IsError(ErrorKind::kFormat, {.key = "bins", .value = "0 x 0 x 0"}));
   EXPECT_THAT(ParseError(Header(-90, -90, 180) + body),

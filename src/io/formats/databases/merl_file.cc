@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/files/content.h"
 #include "core/files/file.h"
@@ -19,6 +22,7 @@ namespace {
 
 using Dimensions = std::array<int32_t, 3>;  // theta_h, theta_d, phi_d
 constexpr size_t kHeaderSize = sizeof(Dimensions);
+constexpr Dimensions kUsualDimensions = {90, 90, 180};
 
 Dimensions DimensionsOf(const MerlGrid& grid) { return {grid.theta_h, grid.theta_d, grid.phi_d}; }
 
@@ -28,13 +32,53 @@ std::string ToString(const Dimensions& n) {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
 }
 
-// A header as a machine of the other byte order writes it.
-std::string BigEndian(const Dimensions& dimensions) {
-  std::string bytes;
-  for (const int32_t n : dimensions) {
-    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(n >> shift);
+// The number at `bytes`, of either order of bytes.
+template <typename T>
+T LoadNumber(const char* bytes, bool big_endian) {
+  std::array<char, sizeof(T)> in_order;
+  std::memcpy(in_order.data(), bytes, sizeof(T));
+  if (big_endian) std::ranges::reverse(in_order);
+  return LoadLittleEndian<T>(in_order.data());
+}
+
+// How the numbers of a file are written. Whoever keeps tables in this format may have other numbers
+// of bins, float32, or the bytes of another machine.
+struct MerlLayout {
+  MerlGrid grid;
+  bool is_float = false, big_endian = false;
+
+  size_t NumberSize() const { return is_float ? sizeof(float) : sizeof(double); }
+  size_t FileSize() const { return kHeaderSize + kChannels * NumberSize() * grid.size(); }
+  double Number(const char* bytes, int k) const {
+    const char* const at = bytes + NumberSize() * static_cast<size_t>(k);
+    return is_float ? LoadNumber<float>(at, big_endian) : LoadNumber<double>(at, big_endian);
   }
-  return bytes;
+};
+
+// MERL's numbers in another order are refused: nobody knows which one of them is phi_d.
+bool IsPlausible(const Dimensions& n) {
+  constexpr int kFewest = 4, kMost = 720;
+  constexpr double kMostBins = 2e7;
+  const auto [fewest, most] = std::minmax({n[0], n[1], n[2]});
+  if (n != kUsualDimensions && std::ranges::is_permutation(n, kUsualDimensions)) return false;
+  return fewest >= kFewest && most <= kMost && 1.0 * n[0] * n[1] * n[2] <= kMostBins;
+}
+
+// The layout that the header says, if there is one whose size the file has.
+std::optional<MerlLayout> LayoutOf(std::string_view bytes) {
+  if (bytes.size() < kHeaderSize) return std::nullopt;
+  for (const bool big_endian : {false, true}) {
+    Dimensions n;
+    for (size_t k = 0; k < n.size(); ++k) {
+      n[k] = LoadNumber<int32_t>(bytes.data() + k * sizeof(int32_t), big_endian);
+    }
+    if (!IsPlausible(n)) continue;
+    for (const bool is_float : {false, true}) {
+      const MerlLayout layout = {{n[0], n[1], n[2]}, is_float, big_endian};
+      if (bytes.size() == layout.FileSize()) return layout;
+    }
+  }
+  return std::nullopt;
 }
 
 // What makes a file none of MERL's.
@@ -42,63 +86,121 @@ struct MerlDefect {
   std::string key, value, problem;
 };
 
-// Why `bytes` is no MERL file, or nothing if it is one.
-std::optional<MerlDefect> DefectOf(std::string_view bytes, const MerlGrid& grid) {
-  const size_t file_size = kHeaderSize + kChannels * PlaneSize(grid);
+// Why `bytes`, without a layout, is no MERL file.
+MerlDefect DefectOf(std::string_view bytes) {
+  const size_t file_size = MerlLayout().FileSize();
   const std::string size = std::to_string(bytes.size()) + " bytes";
   const std::string expected = "a MERL file has " + std::to_string(file_size) + " bytes";
   const std::string length = std::to_string(bytes.size());
-  if (bytes.empty()) return MerlDefect{"bytes", length, "the file is empty; " + expected};
+  if (bytes.empty()) return {"bytes", length, "the file is empty; " + expected};
   if (const Content content = RecogniseContent(bytes); content.kind != Content::Kind::kUnknown) {
-    return MerlDefect{"content", content.name, "this is " + content.name + "; " + expected};
+    return {"content", content.name, "this is " + content.name + "; " + expected};
   }
   if (bytes.size() < kHeaderSize) {
-    return MerlDefect{"bytes", length, "truncated: " + size + "; " + expected};
+    return {"bytes", length, "truncated: " + size + "; " + expected};
   }
   Dimensions n;
   std::memcpy(n.data(), bytes.data(), kHeaderSize);
-  if (bytes.starts_with(BigEndian(DimensionsOf(grid)))) {
-    return MerlDefect{"numbers", "big-endian",
-                      "its numbers are big-endian; a MERL file has little-endian ones: swap the "
-                      "bytes of its three int32 and of all float64 after them"};
-  }
-  if (n != DimensionsOf(grid)) {
-    return MerlDefect{"bins", ToString(n),
-                      "the header says " + ToString(n) + " bins in a file of " + size +
-                          "; a MERL file has " + ToString(DimensionsOf(grid)) + " bins"};
-  }
-  if (bytes.size() == kHeaderSize + kChannels * PlaneSize(grid) / 2) {
-    return MerlDefect{
-        "numbers", "float32",
-        "its values are float32; a MERL file has float64: write them so, " + expected};
+  if (n != kUsualDimensions) {
+    return {"bins", ToString(n),
+            "the header says " + ToString(n) + " bins in a file of " + size + "; a MERL file has " +
+                ToString(kUsualDimensions) +
+                " bins, or others with 8 or 4 "
+                "bytes for each and channel"};
   }
   if (bytes.size() < file_size) {
-    return MerlDefect{"bytes", length,
-                      "truncated: " + size + "; " + expected + "; get it once more"};
+    return {"bytes", length, "truncated: " + size + "; " + expected + "; get it once more"};
   }
-  if (bytes.size() > file_size) {
-    return MerlDefect{
-        "bytes", length,
-        std::to_string(bytes.size() - file_size) + " bytes too many: " + size + "; " + expected};
+  return {"bytes", length,
+          std::to_string(bytes.size() - file_size) + " bytes too many: " + size + "; " + expected};
+}
+
+// --- phi_d over a full circle ---
+
+// The mean of |a - b| / (a + b) over values of a plane that stand `apart` bins of phi_d from each
+// other.
+double DifferenceAt(const std::vector<double>& plane, int phis, int apart) {
+  double sum = 0;
+  int count = 0;
+  for (size_t row = 0; row < plane.size(); row += phis) {
+    for (int p = 0; p + apart < phis; ++p) {
+      const double a = plane[row + p], b = plane[row + p + apart];
+      if (!(a >= 0 && b >= 0 && a + b > 0)) continue;
+      sum += std::abs(a - b) / (a + b);
+      ++count;
+    }
   }
-  return std::nullopt;
+  return count > 0 ? sum / count : 0;
+}
+
+// Whether phi_d goes round once, and not only from 0 to 180 degrees, as reciprocity allows: values
+// half a circle apart are those of exchanged directions, and are more alike than those of a
+// quarter.
+bool IsFullCircle(const BrdfTable& table) {
+  const int phis = table.grid.phi_d;
+  if (DimensionsOf(table.grid) == kUsualDimensions || phis % 4 != 0) return false;
+  const double half = DifferenceAt(table.stored[1], phis, phis / 2);
+  return 2 * half < DifferenceAt(table.stored[1], phis, phis / 4);
+}
+
+// Takes the means of exchanged directions, or the one that was measured.
+void FoldFullCircle(BrdfTable* table) {
+  const int phis = table->grid.phi_d, folded_phis = phis / 2;
+  for (std::vector<double>& plane : table->stored) {
+    std::vector<double> folded;
+    folded.reserve(plane.size() / 2);
+    for (size_t row = 0; row < plane.size(); row += phis) {
+      for (int p = 0; p < folded_phis; ++p) {
+        const double a = plane[row + p], b = plane[row + p + folded_phis];
+        folded.push_back(a >= 0 && b >= 0 ? (a + b) / 2 : std::max(a, b));
+      }
+    }
+    plane = std::move(folded);
+  }
+  table->grid.phi_d = folded_phis;
+}
+
+// The table, and a note on how it is written if that is not as MERL's are.
+struct ReadTable {
+  BrdfTable table;
+  std::string note = {};
+};
+
+ReadTable ReadLayout(std::string_view bytes, const std::string& source) {
+  const std::optional<MerlLayout> layout = LayoutOf(bytes);
+  if (!layout) {
+    const MerlDefect defect = DefectOf(bytes);
+    throw ErrorIn(ErrorKind::kFormat, source, defect.problem).About(defect.key, defect.value);
+  }
+  ReadTable read = {.table = {source, layout->grid, {}}};
+  const char* data = bytes.data() + kHeaderSize;
+  for (std::vector<double>& plane : read.table.stored) {
+    plane.resize(layout->grid.size());
+    if (layout->is_float || layout->big_endian) {
+      for (int k = 0; k < layout->grid.size(); ++k) plane[k] = layout->Number(data, k);
+    } else {
+      std::memcpy(plane.data(), data, PlaneSize(layout->grid));
+    }
+    data += layout->NumberSize() * plane.size();
+  }
+  const auto say = [&](bool is_so, const std::string& what) {
+    if (is_so) read.note += (read.note.empty() ? "read as: " : ", ") + what;
+  };
+  const Dimensions dimensions = DimensionsOf(layout->grid);
+  say(dimensions != kUsualDimensions, ToString(dimensions) + " bins");
+  say(layout->is_float, "float32");
+  say(layout->big_endian, "big-endian numbers");
+  if (IsFullCircle(read.table)) {
+    FoldFullCircle(&read.table);
+    say(true, "phi_d over 360 degrees, means of exchanged directions");
+  }
+  return read;
 }
 
 }  // namespace
 
-BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid) {
-  CheckGrid(grid);
-  if (const std::optional<MerlDefect> defect = DefectOf(bytes, grid)) {
-    throw ErrorIn(ErrorKind::kFormat, source, defect->problem).About(defect->key, defect->value);
-  }
-  BrdfTable table{source, grid, {}};
-  const char* data = bytes.data() + kHeaderSize;
-  for (std::vector<double>& plane : table.stored) {
-    plane.resize(grid.size());
-    std::memcpy(plane.data(), data, PlaneSize(grid));
-    data += PlaneSize(grid);
-  }
-  return table;
+BrdfTable ParseMerl(std::string_view bytes, const std::string& source) {
+  return ReadLayout(bytes, source).table;
 }
 
 BrdfTable ReadMerl(const std::string& path) { return ParseMerl(ReadFile(path), path); }
@@ -106,10 +208,9 @@ BrdfTable ReadMerl(const std::string& path) { return ParseMerl(ReadFile(path), p
 void WriteMerl(const BrdfTable& table, const std::string& path,
                const BeforeRenaming& before_renaming) {
   CheckTable(table);
-  const Dimensions dimensions = DimensionsOf({});
-  if (DimensionsOf(table.grid) != dimensions) {
+  if (DimensionsOf(table.grid) != kUsualDimensions) {
     throw Error(ErrorKind::kMismatch, "cannot write '" + path + "': a MERL file has " +
-                                          ToString(dimensions) + " bins, this table has " +
+                                          ToString(kUsualDimensions) + " bins, this table has " +
                                           ToString(DimensionsOf(table.grid)))
         .At(path)
         .About("bins", ToString(DimensionsOf(table.grid)));
@@ -118,7 +219,7 @@ void WriteMerl(const BrdfTable& table, const std::string& path,
       path,
       [&](std::ostream& out) {
         std::array<char, kHeaderSize> header{};
-        std::memcpy(header.data(), dimensions.data(), kHeaderSize);
+        std::memcpy(header.data(), kUsualDimensions.data(), kHeaderSize);
         out.write(header.data(), kHeaderSize);
         for (std::vector<double> plane : table.stored) {
           for (int bin = 0; bin < table.grid.size(); ++bin) {
@@ -134,8 +235,16 @@ void WriteMerl(const BrdfTable& table, const std::string& path,
 namespace {
 
 bool LooksLikeMerl(std::string_view bytes) {
-  const Dimensions usual = DimensionsOf({});
-  return bytes.size() >= kHeaderSize && std::memcmp(bytes.data(), usual.data(), kHeaderSize) == 0;
+  if (bytes.size() < kHeaderSize) return false;
+  return std::memcmp(bytes.data(), kUsualDimensions.data(), kHeaderSize) == 0 || LayoutOf(bytes);
+}
+
+Measurement ReadMerlMeasurement(std::string_view bytes, const std::string& source,
+                                const SourceOptions& /*options*/) {
+  ReadTable read = ReadLayout(bytes, source);
+  Measurement measurement{.source = source, .kind = "MERL measurement", .table = read.table};
+  if (!read.note.empty()) measurement.notes.push_back(read.note);
+  return measurement;
 }
 
 }  // namespace
@@ -146,20 +255,14 @@ MeasurementFormat MerlFormat() {
           .ending = ".binary",
           .is_text = false,
           .recognise = LooksLikeMerl,
-          .read =
-              [](std::string_view bytes, const std::string& source, const SourceOptions&) {
-                return Measurement{.source = source,
-                                   .kind = "MERL measurement",
-                                   .table = ParseMerl(bytes, source)};
-              },
+          .read = ReadMerlMeasurement,
           .written_as = "MERL layout",
-          .write =
-              [](const Measurement& measurement, const std::string& path, int,
-                 const BeforeRenaming& before_renaming) {
-                const BrdfTable& table = TableOf(measurement);
-                WriteMerl(table, path, before_renaming);
-                return ValidText(CountBins(table), "bins");
-              }};
+          .write = [](const Measurement& measurement, const std::string& path, int,
+                      const BeforeRenaming& before_renaming) {
+            const BrdfTable& table = TableOf(measurement);
+            WriteMerl(table, path, before_renaming);
+            return ValidText(CountBins(table), "bins");
+          }};
 }
 
 }  // namespace trilobe
