@@ -66,7 +66,6 @@ constexpr std::array kForeign = {
             "make its table (ScatterBeta, ScatterAzimuth, BRDF) one of theta_i, theta_o and phi_o: "
             "beta is the distance of the sines of the direction and of the mirror direction"},
     Foreign{""sv, "tracepro", "", "a TracePro file, whose format is not public", ""},
-    Foreign{""sv, "param_type", ".ssdd", "a libbsdf .ssdd file, which is not read", ""},
     Foreign{
         "[{"sv, "", "", "a list in JSON, which is not read",
         R"(make it an object of columns, as {"theta_i": [...], "brdf": [...]}, or save it as CSV)"},

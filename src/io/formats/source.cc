@@ -38,6 +38,7 @@
   X(Speos)                         \
   X(Pab)                           \
   X(OpenMaterial)                  \
+  X(Ssdd)                          \
   X(JsonTable)                     \
   X(Csv)                           \
   X(LightTools)                    \

@@ -52,8 +52,6 @@ TEST(ForeignFile, IsNamedWithWhatToDo) {
        "a TracePro surface property, whose format is not public; make its table (ScatterBeta, "
        "ScatterAzimuth, BRDF) one of theta_i, theta_o and phi_o: beta is the distance of the sines "
        "of the direction and of the mirror direction"},
-      {"f.ssdd", "VERSION 0.2\nDATA_TYPE brdf\nPARAM_TYPE spherical_coordinate_system\n",
-       "a libbsdf .ssdd file, which is not read" + kAsCsv},
       {"f.ies", "IESNA:LM-63-2002\n[TEST] 1\n",
        "an IES file of a luminaire, which is no material; give the measurement of a material"},
       {"f.axf", hdf,
@@ -101,12 +99,9 @@ TEST(ForeignFile, OtherMerlFiles) {
     bytes.resize(size);
     return ErrorOfSource("f.binary", bytes);
   };
-  EXPECT_THAT(error(17496012), IsError(ErrorKind::kFormat,
-                                       {.file = "f.binary", .key = "numbers", .value = "float32"}));
-  for (size_t k = 0; k < header.size(); k += 4) std::reverse(&header[k], &header[k] + 4);
-  EXPECT_THAT(
-      error(34992012),
-      IsError(ErrorKind::kFormat, {.file = "f.binary", .key = "numbers", .value = "big-endian"}));
+  for (const size_t size : {17496000, 34992013}) {
+    EXPECT_THAT(error(size), IsError(ErrorKind::kFormat, {.file = "f.binary", .key = "bytes"}));
+  }
 }
 
 TEST(ForeignFile, PolarisedTensors) {

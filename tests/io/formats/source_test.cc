@@ -238,6 +238,7 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       {"cornell", "31\n400 410\n"},
       {"astm", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n"},
       {"speos", "OPTIS - brdf surface file v9.0\n"},
+      {"ssdd", "VERSION 0.2\nDATA_TYPE brdf\n"},
       {"pab", "#sample_name \"x\"\n#intheta 30\n"},
       {"openmaterial", "{\"brdf\": {\"lookupTable\": []}}"},
       {"json", "{\"theta_i\": [10],\n\"theta_o\": [20],\n\"f\": [0.5]}"},
