@@ -10,6 +10,7 @@
 #include <numeric>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -165,6 +166,10 @@ std::string TellCosine(const BrdfSamples& samples) {
   return begin + WhichCosine(cosine.IsOneTooMany());
 }
 
+constexpr std::string_view kFromMirror =
+    "theta_o seems to be counted from the mirror direction; add theta_i to it, or name its column "
+    "so, --columns=theta_i=NAME,from_mirror=NAME,phi_o=NAME,f=NAME by the names of the header";
+
 std::string TellHighlight(const BrdfSamples& samples) {
   const HighlightSymptom highlight = HighlightOf(samples);
   if (highlight.IsAtLight()) {
@@ -179,9 +184,12 @@ std::string TellHighlight(const BrdfSamples& samples) {
   }
   if (highlight.IsAtNormal()) {
     return Sentence("the brightest samples stand about theta_o = 0 at ", highlight.at_normal,
-                    " of ", highlight.incidences,
-                    " incidences, whatever theta_i: theta_o seems to be counted from the mirror "
-                    "direction; add theta_i to it");
+                    " of ", highlight.incidences, " incidences, whatever theta_i: ", kFromMirror);
+  }
+  if (const FromMirrorSymptom mirror = FromMirrorOf(samples); mirror.IsThere()) {
+    return Sentence("exchanged directions differ by ", WholePercent(mirror.error),
+                    " % in the median, and by ", WholePercent(mirror.error_from_mirror),
+                    " % from the mirror direction: ", kFromMirror);
   }
   return "";
 }
@@ -260,7 +268,8 @@ std::string TellElevation(const BrdfSamples& samples) {
       " near theta_o = 0, where azimuths are close to one another, and of ",
       std::exp(azimuths.near_horizon),
       " near 90: angles seem to be elevations, counted from the horizon; write 90 minus "
-      "them");
+      "them, or name the columns so, --columns=elevation_i=NAME,elevation_o=NAME,phi_o=NAME,f=NAME "
+      "by the names of the header");
 }
 
 std::string TellNegative(const BinCounts& counts) {
@@ -429,7 +438,10 @@ std::string UndecidedIn(const Measurement& scattered) {
   std::vector<std::string> undecided;
   if (!CosineOf(some).is_decided) undecided.emplace_back("cosines (few exchanged directions)");
   if (!HighlightOf(some).IsDecided()) {
-    undecided.emplace_back("where azimuths and theta_o are counted from (no clear highlight)");
+    undecided.emplace_back(
+        FromMirrorOf(some).is_decided
+            ? "where azimuths are counted from (no clear highlight)"
+            : "where azimuths and theta_o are counted from (no clear highlight)");
   }
   if (!AzimuthsOf(some).is_decided) {
     undecided.emplace_back("elevations (few azimuths near the normal and the horizon)");

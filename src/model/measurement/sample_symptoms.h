@@ -67,6 +67,17 @@ double MedianReflected(const BrdfSamples& samples);
 // theta_i. Median over the incidences; 0 without scans.
 double ReflectedLightOfScans(const BrdfSamples& samples);
 
+// Whether theta_o is counted from the mirror direction, in scans of the plane of incidence at
+// several theta_i: medians of |log(f / f exchanged)| as it was read, with a cosine more or less if
+// that is better, and with theta_o counted so. Of satin and rough metals, whose lobes have no clear
+// highlight.
+struct FromMirrorSymptom {
+  bool is_decided = false;
+  double error = 0, error_from_mirror = 0;
+  bool IsThere() const { return error > 0.1 && error_from_mirror < error / 3; }
+};
+FromMirrorSymptom FromMirrorOf(const BrdfSamples& samples);
+
 // Directions that are there more than once, at equal azimuths of an anisotropic measurement, and
 // how far apart their values are: the 95th percentile of |a - b| / ((a + b) / 2) over neighbours.
 struct RepeatedDirections {

@@ -87,6 +87,38 @@ TEST(SampleSymptoms, AHighlightTowardsTheLightIsTold) {
               ElementsAre(HasSubstr("theta_o seems to be counted from the mirror direction")));
 }
 
+// A scan of a satin material at four incidences, whose lobes have no clear highlight;
+// `from_mirror`: as if theta_o were counted from there.
+Measurement SatinScans(bool from_mirror, double cosines = 0) {
+  SampleCollector collector("x.csv", "test");
+  for (const double theta_i : {10.0, 30.0, 50.0, 70.0}) {
+    for (int from = -60; from <= 60; from += 3) {
+      const double theta_o = from + (from_mirror ? theta_i : 0);
+      if (std::abs(theta_o) > 85) continue;
+      const auto at = [&](double theta) {
+        return SphericalAngles{.theta_i = DegreesToRadians(theta_i),
+                               .phi_i = 0,
+                               .theta_o = DegreesToRadians(std::abs(theta)),
+                               .phi_o = theta > 0 ? kPi : 0};
+      };
+      const HalfDiffAngles half = ToHalfDiff(ToDirections(at(theta_o)));
+      const double rho =
+          (0.1 + (0.3 + half.theta_d) * std::exp(-half.theta_h * half.theta_h / 0.3)) *
+          std::pow(std::cos(at(theta_o).theta_o), cosines);
+      collector.Add(at(from), {rho, rho, rho});
+    }
+  }
+  return collector.Take();
+}
+
+TEST(SampleSymptoms, ThetaFromTheMirrorDirectionIsToldOfSatin) {
+  EXPECT_THAT(SymptomsOfSamples(SatinScans(true)),
+              ElementsAre(HasSubstr("theta_o seems to be counted from the mirror direction")));
+  EXPECT_THAT(SymptomsOfSamples(SatinScans(false)), IsEmpty());
+  EXPECT_FALSE(FromMirrorOf(SatinScans(false, 1).samples).IsThere());
+  EXPECT_TRUE(FromMirrorOf(SatinScans(false).samples).is_decided);
+}
+
 // Writes a wide highlight with angles from the horizon.
 void WriteElevations(SphericalAngles* at, double* rho) {
   const double theta_h = ToHalfDiff(ToDirections(*at)).theta_h;
@@ -132,7 +164,7 @@ TEST(SampleSymptoms, WhatCannotBeCheckedIsSaid) {
   EXPECT_THAT(one, AllOf(HasSubstr("cosines (few exchanged directions)"), HasSubstr("elevations")));
   const auto flatten = [](SphericalAngles*, double* rho) { *rho = 0.2; };
   EXPECT_THAT(UndecidedIn(Goniometer(flatten)),
-              testing::StartsWith("where azimuths and theta_o are counted from"));
+              testing::StartsWith("where azimuths are counted from"));
 }
 
 TEST(SampleSymptoms, TurnedSamplesAreToldAsOthersAre) {
@@ -382,6 +414,7 @@ TEST(SampleSymptoms, TheSharedCasesAreTold) {
   EXPECT_THAT(told("one_incidence_from_mirror.csv"),
               ElementsAre(HasSubstr("--azimuth=from_mirror")));
   EXPECT_THAT(told("turned_from_mirror.csv"), ElementsAre(HasSubstr("--azimuth=from_mirror")));
+  EXPECT_THAT(told("specular_relative_satin.csv"), ElementsAre(HasSubstr("from_mirror=NAME")));
   EXPECT_THAT(told("percent.csv"), ElementsAre(HasSubstr("--scale=0.01")));
   EXPECT_THAT(told("radians.csv"), testing::Contains(HasSubstr("in radians")));
   EXPECT_THAT(told("sign_dropped.csv"), ElementsAre(HasSubstr("the sign of an angle")));
