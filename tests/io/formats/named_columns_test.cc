@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 
 #include "tests/error_of.h"
 #include "trilobe/core/base/angles.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -68,6 +70,47 @@ TEST(NamedColumns, WhatTheHeaderHasNotIsTold) {
               IsError(ErrorKind::kMissing, {.line = 1, .key = "theta_o"}));
 }
 
+// 30 and 10 degrees from the normal.
+TEST(NamedColumns, ElevationsAreNinetyDegreesMinusTheta) {
+  const std::string rows = "60,80,0,0.25\n90,45,0,0.5\n";
+  for (const std::string names :
+       {"sun elevation,view elevation,raa", "elevation_i [deg],elevation_o,dphi",
+        "Solar Altitude,Sensor Altitude,relative azimuth"}) {
+    const Measurement read = Read(names + ",BRDF\n" + rows, {});
+    ASSERT_EQ(read.samples.size(), 2) << names;
+    EXPECT_NEAR(RadiansToDegrees(read.samples.directions[0].theta_i), 30, 1e-9);
+    EXPECT_NEAR(RadiansToDegrees(read.samples.directions[0].theta_o), 10, 1e-9);
+    EXPECT_EQ(read.samples.directions[1].theta_i, 0);
+  }
+  EXPECT_THAT(Read("sun elevation,view elevation,raa,f\n" + rows, {}).notes,
+              ElementsAre(HasSubstr("'sun elevation' as 90 deg minus theta_i")));
+  EXPECT_THAT(
+      Read("In,Out,dphi,f\n" + rows, {.columns = "elevation_i=In,elevation_o=Out,phi_o=dphi,f=f"})
+          .samples.directions[1]
+          .theta_o,
+      testing::DoubleNear(kPi / 4, 1e-12));
+  // Arms of a goniometer may be said to have an elevation from the normal.
+  EXPECT_THAT(ReadError("source elevation,detector elevation,f\n-60,20,1\n", {}),
+              IsError(ErrorKind::kRange, {.line = 2, .key = "source elevation", .value = "-60"}));
+}
+
+TEST(NamedColumns, AnAzimuthMayRunAboutTheMirrorDirection) {
+  // 20 degrees towards the normal, 20 beyond the mirror direction, and 20 across.
+  const Measurement read = Read("theta_i,theta_o,phi_o,f\n30,20,0,1\n30,20,180,1\n30,20,90,1\n",
+                                {.columns = "theta_i=theta_i,from_mirror=theta_o,phi_o=phi_o,f=f"});
+  ASSERT_EQ(read.samples.size(), 3);
+  const auto& at = read.samples.directions;
+  EXPECT_NEAR(RadiansToDegrees(at[0].theta_o), 10, 1e-9);
+  EXPECT_NEAR(RadiansToDegrees(at[1].theta_o), 50, 1e-9);
+  for (int j = 0; j < 2; ++j) EXPECT_NEAR(RadiansToDegrees(at[j].phi_o), 180, 1e-9);
+  const DirectionPair across = ToDirections(at[2]), beyond = ToDirections(at[1]);
+  const Direction mirror = ToDirection({DegreesToRadians(30), kPi});
+  EXPECT_NEAR(Dot(across.wo, mirror), std::cos(DegreesToRadians(20)), 1e-12);
+  EXPECT_NEAR(across.wo[2], std::cos(DegreesToRadians(30)) * std::cos(DegreesToRadians(20)), 1e-12);
+  EXPECT_NEAR(Dot(beyond.wo, mirror), std::cos(DegreesToRadians(20)), 1e-12);
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("phi_o as the azimuth about it")));
+}
+
 TEST(NamedColumns, AnUnknownNameIsRefused) {
   const std::string known = "' says of no column what it holds; known are theta_i, phi_i";
   EXPECT_THAT(ReadError("a,b\n1,2\n3,4\n", {.columns = "a,b"}),
@@ -82,7 +125,7 @@ TEST(NamedColumns, AnUnknownNameIsRefused) {
 TEST(NamedColumns, CountsMayStandBeforeTheRows) {
   const std::string rows = "30 10 0 0.25\n30 20 0 0.5\n";
   const SourceOptions options = {.columns = "theta_i,theta_o,phi_o,f"};
-  for (const char* const counts : {"2\n", "1 2 1\n", "2 4\n1 2 1\n"}) {
+  for (const char* const counts : {"2\n", "1 2 1\n", "2 4\n1 2 1\n", "2 4 -1.000\n"}) {
     EXPECT_EQ(Read(counts + rows, options).samples.size(), 2) << counts;
   }
   EXPECT_THAT(Read("1 2 1\n" + rows, options).notes,

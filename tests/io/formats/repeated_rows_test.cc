@@ -65,6 +65,14 @@ TEST(RepeatedRows, WhatTellsNothingApartIsReadRowByRow) {
               ElementsAre(1, 2, 3));
 }
 
+TEST(RepeatedRows, HalfTheSumOfFourPolarisationsCounts) {
+  const Measurement read = Read(
+      "theta_i,theta_o,phi_o,pol,f\n30,10,0,ss,1\n30,10,0,sp,0.25\n30,10,0,ps,0.25\n30,10,0,pp,0."
+      "5\n");
+  EXPECT_THAT(FirstsOf(read), ElementsAre(1));
+  EXPECT_THAT(read.notes, Contains(HasSubstr("half their sum is taken")));
+}
+
 TEST(RepeatedRows, DirectionsThatLackAKindAreLeftOut) {
   const Measurement read = Read(Table("pol", "s", "p") + "30,30,0,s,9\n30,40,0,s,9\n30,40,0,p,\n");
   EXPECT_THAT(FirstsOf(read), ElementsAre(0.5, 3));

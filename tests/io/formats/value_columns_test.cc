@@ -56,6 +56,23 @@ TEST(ValueColumns, AValueInInverseSteradianIsNotAsked) {
   EXPECT_EQ(Read("x\n30,10,0.5\n", {.columns = "theta_i,theta_o,r"}).samples.size(), 1);
 }
 
+TEST(ValueColumns, PolarisationsMakeOneValue) {
+  const std::string rows = "\n30,10,0,1,0.25,0.25,0.5\n";
+  for (const std::string names :
+       {"f_ss,f_sp,f_ps,f_pp", "ss,sp,ps,pp", "BRDF_pp,BRDF_ps,BRDF_sp,BRDF_ss"}) {
+    const Measurement read = Read("theta_i,theta_o,phi_o," + names + rows);
+    EXPECT_EQ(read.samples.rho, (std::vector<Rgb>{{1, 1, 1}})) << names;
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("half the sum of '" + names.substr(0, 2))));
+  }
+  EXPECT_EQ(Read("theta_i,theta_o,BRDF_s,BRDF_p\n30,10,1,0.5\n").samples.rho[0][2], 0.75);
+  EXPECT_EQ(Read("theta_i,theta_o,Rs,Rp\n30,10,1,0.5\n", {.scale = 0.5}).samples.rho[0][2], 0.375);
+  EXPECT_THAT(ReadError("theta_i,theta_o,Rs,Rp\n30,10,1,0.5\n"),
+              IsError(ErrorKind::kMissing, {.key = "scale", .value = "Rs"}));
+  // One of two, and beside f.
+  EXPECT_THAT(ReadError("theta_i,theta_o,BRDF_s\n30,10,1\n"), testing::Optional(testing::_));
+  EXPECT_EQ(Read("theta_i,theta_o,f,f_s,f_p\n30,10,1,0.5,0\n").samples.rho[0][0], 1);
+}
+
 TEST(ValueColumns, NamesOfSatellites) {
   const Measurement read = Read(
       "solar_zn,solar_az,sensor_zn,sensor_az,band_865\n20,135,10,165,0.5\n", {.scale = 0.3183});

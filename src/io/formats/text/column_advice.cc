@@ -230,10 +230,6 @@ std::string AdviceOnCoordinates(const std::vector<TableColumn>& columns) {
                             : !is_distance && key.starts_with(coordinate.begin);
       if (fits) return "column '" + column.name + "' is " + std::string(coordinate.what);
     }
-    if (key.find("elevation") != std::string::npos || key.find("altitude") != std::string::npos) {
-      return "column '" + column.name +
-             "' is counted from the horizon; theta is 90 minus it, in degrees";
-    }
     if (key.find("gloss") != std::string::npos || key.find("45as") != std::string::npos) {
       return "column '" + column.name +
              "' is of gloss or colour at fixed angles, and no BRDF; one is measured at many pairs "
@@ -320,11 +316,6 @@ std::string AdviceOn(const std::vector<TableColumn>& columns, const GivenAngles&
                              return role == ColumnRole::kThetaO || role == ColumnRole::kTheta;
                            });
   const bool from_mirror = has([](ColumnRole role) { return role == ColumnRole::kFromMirror; });
-  if (has_theta_i && !has_theta_o && from_mirror &&
-      has([](ColumnRole role) { return role == ColumnRole::kPhiO || role == ColumnRole::kPhi; })) {
-    return "angles from the mirror direction are read in the plane of incidence alone; make them "
-           "theta_o and phi_o";
-  }
   if (!has_theta_i || !(has_theta_o || from_mirror)) return AdviceOnAngles(columns);
   const bool has_values =
       has([](ColumnRole role) { return role >= ColumnRole::kRed && role <= ColumnRole::kBand; });

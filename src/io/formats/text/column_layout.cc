@@ -74,7 +74,7 @@ class ColumnLayouter {
                                  kUsualColumns + " names columns");
     }
     if (!theta_o && !given.theta_o) theta_o = One(Role::kTheta);
-    if (!theta_o && !given.theta_o && !phi_i && !phi_o && All(Role::kPhi).empty()) {
+    if (!theta_o && !given.theta_o) {
       theta_o = One(Role::kFromMirror);
       layout_.from_mirror = theta_o.has_value();
     }
@@ -116,6 +116,10 @@ class ColumnLayouter {
       LayBands(bands);
     } else if (!values.empty()) {
       layout_.values = {*One(Role::kValue)};
+    } else if (const std::vector<size_t> polarised = All(Role::kPolarised); !polarised.empty()) {
+      layout_.is_polarised = true;
+      layout_.values = polarised;
+      for (const size_t k : polarised) is_read_[k] = true;
     } else if (red.size() + green.size() + blue.size() == 1) {
       layout_.values = {
           *One(red.empty() ? green.empty() ? Role::kBlue : Role::kGreen : Role::kRed)};
@@ -171,13 +175,21 @@ class ColumnLayouter {
 std::vector<std::string> RenamedColumns(const ColumnLayout& layout) {
   std::vector<std::string> renamed;
   const auto add = [&](size_t column, const char* usual) {
-    const std::string& name = layout.columns[column].name;
-    if (!IsCalled(name, usual)) renamed.push_back(Quoted(name) + " as " + usual);
+    const TableColumn& of = layout.columns[column];
+    const std::string as = of.from_horizon ? " as 90 deg minus " : " as ";
+    if (!IsCalled(of.name, usual)) renamed.push_back(Quoted(of.name) + as + usual);
   };
   for (int k = 0; k < kAngles; ++k) {
     if (layout.angles[k]) add(*layout.angles[k], kUsualNames[k]);
   }
-  if (!layout.wavelengths.empty()) return renamed;
+  if (layout.is_polarised) {
+    std::string names;
+    for (const size_t k : layout.values) {
+      names += (names.empty() ? "" : ", ") + Quoted(layout.columns[k].name);
+    }
+    renamed.push_back("half the sum of " + names + ", for light that is not polarised");
+  }
+  if (!layout.wavelengths.empty() || layout.is_polarised) return renamed;
   for (size_t k = 0; k < layout.values.size(); ++k) {
     if (layout.columns[layout.values[k]].role == Role::kValue) continue;
     add(layout.values[k], layout.values.size() == 1 ? "f" : kUsualNames[kAngles + k]);

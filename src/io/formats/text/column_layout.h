@@ -21,6 +21,7 @@ struct ColumnLayout {
   std::array<double, kAngles> units = {};                  // [rad] of the angles
   std::optional<size_t> phase = {};       // angle between the directions, in the place of phi_o
   bool from_mirror = false;               // theta_o is counted from there
+  bool is_polarised = false;              // half the sum of the values counts
   std::vector<size_t> values = {};        // one for all channels; R, G, B; or a spectrum
   std::vector<double> wavelengths = {};   // [nm] of a spectrum, ascending
   std::optional<size_t> wavelength = {};  // column of the wavelength of a row

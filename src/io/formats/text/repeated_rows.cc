@@ -12,8 +12,10 @@ namespace {
 constexpr std::string_view kRepetitions[] = {"sample",      "sampleid",  "specimen", "repeat",
                                              "repetition",  "replicate", "run",      "trial",
                                              "measurement", "spot",      "scan"};
-// Polarisations of light and detector: f is half the sum of these, and not their mean.
+// Polarisations of light and detector: f is half the sum of all four, and not their mean.
 constexpr std::string_view kCrossed[] = {"ss", "sp", "ps", "pp", "hh", "hv", "vh", "vv"};
+
+bool IsCrossedKind(const std::string& kind) { return IsOneOf(Plain(kind), kCrossed); }
 
 }  // namespace
 
@@ -44,11 +46,12 @@ void RepeatedRows::Add(std::string_view kind, Row row) {
 
 bool RepeatedRows::IsRepeated() const {
   if (is_twice_ || kinds_.size() < 2 || kinds_.size() > kMostKinds) return false;
-  if (std::ranges::any_of(kinds_,
-                          [](const auto& kind) { return IsOneOf(Plain(kind), kCrossed); })) {
-    return false;
-  }
+  if (std::ranges::any_of(kinds_, IsCrossedKind) && !IsCrossed()) return false;
   return 2 * static_cast<size_t>(incomplete()) <= alike_.size();
+}
+
+bool RepeatedRows::IsCrossed() const {
+  return kinds_.size() == 4 && std::ranges::all_of(kinds_, IsCrossedKind);
 }
 
 std::vector<RepeatedRows::Row> RepeatedRows::Means() const {
@@ -60,7 +63,7 @@ std::vector<RepeatedRows::Row> RepeatedRows::Means() const {
     for (size_t k = 0; k < mean.values.size(); ++k) {
       double sum = 0;
       for (const size_t j : alike) sum += rows_[j].values[k];
-      mean.values[k] = sum / static_cast<double>(alike.size());
+      mean.values[k] = sum / (IsCrossed() ? 2 : static_cast<double>(alike.size()));
     }
     means.push_back(std::move(mean));
   }

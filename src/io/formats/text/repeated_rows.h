@@ -31,8 +31,10 @@ class RepeatedRows {
 
   // Whether no kind is there twice for the same directions, and half of these or more have all.
   bool IsRepeated() const;
-  // Where it is so, the means at directions that have all kinds, in the order of their first rows;
-  // else the rows as they are.
+  // Whether they are the polarisations of light and detector, all four: f is half their sum.
+  bool IsCrossed() const;
+  // Where it is so, the means, or half the sums, at directions that have all kinds, in the order of
+  // their first rows; else the rows as they are.
   std::vector<Row> Means() const;
   int incomplete() const;     // the number of directions that lack a kind
   std::string Kinds() const;  // "s, p"

@@ -1,6 +1,7 @@
 #include "io/formats/text/table_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <iterator>
@@ -32,6 +33,7 @@ constexpr std::string_view kPerSteradian[] = {"1/sr", "sr^-1", "sr-1", "/sr", "s
 constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar", "zen", "zn"};
 constexpr std::string_view kPhiWords[] = {"phi",    "azimuthal", "azimuth", "azimut",
                                           "acimut", "azim",      "az"};
+constexpr std::string_view kElevationWords[] = {"elevation", "altitude", "elev"};
 constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
                                           "incoming", "l",     "light", "src",         "source",
                                           "sun",      "solar", "illum", "illumination"};
@@ -122,6 +124,12 @@ std::optional<Role> AngleRole(std::string key) {
     return role;
   }
   return RoleByWords(key, kPhiWords, Role::kPhiI, Role::kPhiO, Role::kPhi);
+}
+
+// Role of an angle from the horizon: "sun elevation", "elevation_o", "altitude angle".
+std::optional<Role> ElevationRole(std::string key) {
+  if (const size_t at = key.find("angle"); at != std::string::npos) key.erase(at, 5);
+  return RoleByWords(key, kElevationWords, Role::kThetaI, Role::kThetaO, Role::kTheta);
 }
 
 // --- Values --------------------------------------------------------------------------------------
@@ -253,7 +261,9 @@ void SetRole(const std::string& plain, TableColumn* column) {
       column->unit = unit;
       break;
     }
-    column->role = AngleRole(key).value_or(Role::kOther);
+    const auto elevation = ElevationRole(key);
+    column->from_horizon = elevation.has_value();
+    column->role = elevation ? *elevation : AngleRole(key).value_or(Role::kOther);
   }
 }
 
@@ -276,9 +286,49 @@ TableColumn ColumnNamed(std::string_view name) {
   return column;
 }
 
+namespace {
+
+// Polarisations of the light and of the detector, or of one of them. All of a set must be there.
+constexpr std::array<std::string_view, 4> kPolarisations[] = {
+    {"ss", "sp", "ps", "pp"}, {"hh", "hv", "vh", "vv"}, {"s", "p", "", ""}, {"te", "tm", "", ""}};
+
+// Marks "f_ss", "f_sp", "f_ps" and "f_pp", or "BRDF_s" and "BRDF_p", if nothing else is a value.
+void MarkPolarised(std::vector<TableColumn>* columns) {
+  const auto is_value = [](const TableColumn& column) {
+    return column.role >= Role::kRed && column.role <= Role::kBand;
+  };
+  if (std::ranges::any_of(*columns, is_value)) return;
+  for (const auto& set : kPolarisations) {
+    std::vector<std::string_view> prefixes(std::begin(kValues), std::end(kValues));
+    prefixes.emplace_back("r");
+    if (set[0].size() > 1) prefixes.emplace_back("");
+    for (const std::string_view prefix : prefixes) {
+      std::vector<TableColumn*> found;
+      for (const std::string_view polarisation : set) {
+        if (polarisation.empty()) continue;
+        const std::string name = std::string(prefix).append(polarisation);
+        const auto at = std::ranges::find_if(*columns, [&](const TableColumn& column) {
+          return column.role == Role::kOther && IsCalled(column.name, name);
+        });
+        if (at != columns->end()) found.push_back(&*at);
+      }
+      if (found.size() != static_cast<size_t>(4 - std::ranges::count(set, ""))) continue;
+      for (TableColumn* const column : found) {
+        column->role = Role::kPolarised;
+        column->is_reflectance =
+            !column->per_steradian && (prefix == "r" || SaysReflectance(prefix));
+      }
+      return;
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
   std::vector<TableColumn> columns;
   for (const std::string& name : names) columns.push_back(ColumnNamed(name));
+  MarkPolarised(&columns);
   const auto called = [&](std::string_view name) {
     return std::ranges::find_if(
         columns, [&](const TableColumn& column) { return IsCalled(column.name, name); });

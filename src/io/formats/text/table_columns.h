@@ -18,10 +18,11 @@ enum class ColumnRole {
   kGreen,
   kBlue,
   kValue,       // for all channels
+  kPolarised,   // f of one polarisation: half the sum of such columns is f
   kBand,        // the value at a wavelength
   kWavelength,  // of the row
   kTheta,       // of a direction that the name does not say
-  kFromMirror,  // theta_o - theta_i in the plane of incidence, > 0 away from the normal
+  kFromMirror,  // of wo from the mirror direction; in the plane of incidence > 0 beyond it
   kPhi,
   kPhase,  // angle between the two directions
   kOther
@@ -38,12 +39,13 @@ struct TableColumn {
   double wavelength = 0;  // [nm] of kBand
   ValueScale scale = ValueScale::kLinear;
   bool is_usual_name = false;   // "theta_i", "r", as the library writes it
+  bool from_horizon = false;    // "sun elevation": 90 degrees minus theta
   bool per_steradian = false;   // the name says so
   bool is_reflectance = false;  // "reflectance", "band_865": pi f, as most mean it, or f
 };
 TableColumn ColumnNamed(std::string_view name);
 
-// Columns that stand beside one another, by which "i", "e" and "g" are known.
+// Columns that stand beside one another, by which "i", "e" and "g" are known, and "f_s" and "f_p".
 std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names);
 
 // Whether a name is this one but for case, punctuation and units of angles.

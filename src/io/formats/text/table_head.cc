@@ -7,6 +7,7 @@
 
 #include "core/files/text_lines.h"
 #include "io/formats/text/table_columns.h"
+#include "io/formats/text/table_lines.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
 
@@ -48,6 +49,58 @@ std::string Listed(const std::vector<std::string>& names) {
   return text + (names.size() > kMost ? ", ..." : "");
 }
 
+// Numbers of a line, whatever is between them.
+std::vector<double> NumbersIn(std::string_view line) {
+  std::vector<double> numbers;
+  std::vector<std::string_view> cells;
+  for (const char separator : {';', '\t', ' ', ','}) {
+    SplitRow(line, separator, &cells);
+    numbers.clear();
+    for (const std::string_view cell : cells) {
+      const std::optional<double> number =
+          ToNumber(cell) ? ToNumber(cell) : DecimalCommaNumber(cell);
+      if (number) numbers.push_back(*number);
+    }
+    if (numbers.size() == cells.size() && numbers.size() > 1) return numbers;
+  }
+  return {};
+}
+
+// Advice on lines of numbers, of which the first is at `lines`, that are no rows of samples: those
+// of one spectrum, or of several lines for each pair of directions. Else "".
+std::string AdviceOnNumbers(TextLines lines) {
+  constexpr int kMostLines = 30;
+  constexpr double kShortest = 200, kLongest = 3000;  // [nm]
+  std::vector<std::vector<double>> rows;
+  do {
+    rows.push_back(NumbersIn(lines.line()));
+  } while (static_cast<int>(rows.size()) < kMostLines && lines.Next());
+  const bool are_pairs = std::ranges::all_of(rows, [](const auto& row) { return row.size() == 2; });
+  const auto ascends = [&] {
+    return std::ranges::adjacent_find(
+               rows, [](const auto& a, const auto& b) { return a[0] >= b[0]; }) == rows.end();
+  };
+  if (are_pairs && rows.size() > 2 && rows.front()[0] >= kShortest && rows.back()[0] <= kLongest &&
+      ascends()) {
+    return "these seem to be wavelengths and values of one pair of directions, which the file does "
+           "not name; a fit needs many pairs: put all files into one table with the header "
+           "theta_i,theta_o,phi_o,wavelength,f";
+  }
+  // Two angles, then a line of readings or of wavelengths, or both, of another length.
+  const bool are_blocks =
+      rows.size() > 5 && std::ranges::all_of(rows, [](const auto& row) { return !row.empty(); }) &&
+      rows[0].size() == 2 && rows[1].size() > 3 && (rows[2].size() == 2 || rows[3].size() == 2);
+  if (!are_blocks) return "";
+  return "these seem to be blocks, each of a line of two angles and " +
+         std::string(rows[2].size() == 2 ? "one" : "two") + " of " +
+         std::to_string(rows[1].size()) +
+         " numbers; make it a table of a row a block, with the header theta_i,theta_o,phi_o and "
+         "the "
+         "wavelengths, as 550nm; readings of a detector become a BRDF by those of a white of known "
+         "reflectance at the same angles: f = reading / reading of the white * its reflectance / "
+         "pi";
+}
+
 }  // namespace
 
 TableHead HeadOf(std::string_view text, const std::string& source, const std::string& columns,
@@ -79,6 +132,9 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
       head.lines.Fail(
           "a line of 206 numbers, as CUReT's list of 61 samples at 205 directions has them, which "
           "another file names: make a table a sample, theta_i,phi_i,theta_o,phi_o,f");
+    }
+    if (const std::string advice = AdviceOnNumbers(head.lines); !advice.empty()) {
+      head.lines.Fail(advice, ErrorKind::kUnsupported, "columns");
     }
     if (LooksLikeRow(head.lines.line(), 2)) {
       head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
@@ -123,12 +179,12 @@ void CheckNames(const std::string& columns) {
   for (const NamedColumn& column : NamedColumns(columns)) whats.push_back(column.what);
   for (const TableColumn& column : ColumnsNamed(whats)) {
     if (column.role != ColumnRole::kOther || column.name.empty() || column.name == "-") continue;
-    throw Error(
-        ErrorKind::kUnknown,
-        "--columns=" + columns + ": '" + column.name +
-            "' says of no column what it holds; known are theta_i, phi_i, theta_o, phi_o, "
-            "phase, r, g, b, f, 550nm, wavelength, db, log10 and ln; - leaves a column out, "
-            "and theta_i=NAME names one of the header")
+    throw Error(ErrorKind::kUnknown,
+                "--columns=" + columns + ": '" + column.name +
+                    "' says of no column what it holds; known are theta_i, phi_i, theta_o, phi_o, "
+                    "elevation_i, elevation_o, from_mirror, phase, r, g, b, f, 550nm, wavelength, "
+                    "db, log10 and ln; - leaves a column out, "
+                    "and theta_i=NAME names one of the header")
         .About("columns", column.name);
   }
 }

@@ -8,6 +8,7 @@
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
+#include "io/formats/optical/zemax_angles.h"
 #include "io/formats/spectrum_bands.h"
 #include "io/formats/text/brighter_side.h"
 #include "io/formats/text/column_advice.h"
@@ -44,7 +45,7 @@ class TableReader {
         row_(head_.separator, layout_),
         choice_(options.rows, head_.names, header_),
         apart_(ColumnApart(layout_, choice_.columns())) {
-    numbers_.resize(layout_.values.size());
+    numbers_.resize(layout_.is_polarised ? 1 : layout_.values.size());
   }
 
   Measurement Read() {
@@ -181,8 +182,20 @@ class TableReader {
   double AngleOf(const TextLines& lines, Angle angle, const AngleRange& range, double missing) {
     const std::optional<size_t> column = layout_.angles[angle];
     if (!column) return missing;
-    return ReadAngle(lines, *column, layout_.columns[*column].name, row_.Number(lines, *column),
-                     layout_.units[angle], range);
+    const TableColumn& of = layout_.columns[*column];
+    const double number = row_.Number(lines, *column);
+    if (!of.from_horizon) {
+      return ReadAngle(lines, *column, of.name, number, layout_.units[angle], range);
+    }
+    if (number < 0) {
+      lines.FailAt(*column, of.name,
+                   "an elevation below 0 is under the horizon; if it is counted from the normal, "
+                   "type --columns=" +
+                       std::string(kUsualNames[angle]) + "=" + of.name +
+                       ", and likewise the others",
+                   ErrorKind::kRange, FactText(number));
+    }
+    return kPi / 2 - ReadAngle(lines, *column, of.name, number, layout_.units[angle], {0, 90});
   }
 
   // Theta with its sign, which turns *phi by 180 degrees.
@@ -219,7 +232,9 @@ class TableReader {
     constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
     theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
     theta_o_ = AngleOf(lines, kThetaO, kTheta, given_theta_o_);
-    if (layout_.from_mirror) theta_o_ += theta_i_;
+    // The angle and the azimuth about the mirror direction; without an azimuth, in the plane.
+    const bool about_mirror = layout_.from_mirror && HasAzimuths();
+    if (layout_.from_mirror && !about_mirror) theta_o_ += theta_i_;
     SphericalAngles at;
     at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
     at.phi_o = layout_.phase ? at.phi_i + AzimuthByPhase(lines) : AngleOf(lines, kPhiO, kPhi, 0);
@@ -230,7 +245,11 @@ class TableReader {
     at.theta_i = Unsigned(theta_i_, &at.phi_i);
     if (turned) at.phi_o += kPi;
     at.theta_o = Unsigned(theta_o_, &at.phi_o);
-    return at;
+    if (!about_mirror) return at;
+    return ToSphericalAngles(ZemaxAngles{.rotation = kPi - at.phi_i,
+                                         .incidence = at.theta_i,
+                                         .azimuth = at.phi_o - at.phi_i,
+                                         .radial = at.theta_o});
   }
 
   // Takes the values of the row; false where none was measured.
@@ -238,10 +257,16 @@ class TableReader {
     const auto is_gap = [&](size_t column) { return row_.IsGapAt(column); };
     if (layout_.values.empty()) return true;
     if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
-    for (size_t k = 0; k < numbers_.size(); ++k) {
+    double sum = 0;
+    for (size_t k = 0; k < layout_.values.size(); ++k) {
       const size_t column = layout_.values[k];
-      numbers_[k] = Linear(layout_.columns[column].scale, row_.Number(lines, column));
+      const double value = Linear(layout_.columns[column].scale, row_.Number(lines, column));
+      sum += value;
+      if (!layout_.is_polarised) numbers_[k] = value;
     }
+    // Of light and detector, f_ss + f_sp is of light s, and f the mean over s and p; of light or
+    // detector alone, f is the mean of two.
+    if (layout_.is_polarised) numbers_[0] = sum / 2;
     return true;
   }
 
@@ -310,7 +335,8 @@ class TableReader {
     const std::string& name = layout_.columns[*apart_].name;
     const int lack = repeated_.incomplete();
     return "column '" + name + "' (" + repeated_.Kinds() +
-           ") tells rows of the same directions apart: their mean is taken" +
+           ") tells rows of the same directions apart: " +
+           (repeated_.IsCrossed() ? "half their sum" : "their mean") + " is taken" +
            (lack > 0 ? ", " + std::to_string(lack) + " directions that lack one are left out"
                      : "") +
            "; --rows=" + name + "=CELL reads one alone";
@@ -369,11 +395,15 @@ std::string TableReader::Note(bool turned) const {
                                   : "theta_o > 0 on the side of the light";
   const bool by_side = (!HasAzimuths() && !layout_.from_mirror) || by_brightness_;
   say(layout_.phase.has_value(), "azimuths by the angle between the directions");
-  say(layout_.from_mirror,
+  say(layout_.from_mirror && !HasAzimuths(),
       "theta_o as theta_i and that angle, > 0 from the mirror direction away from the normal");
+  say(layout_.from_mirror && HasAzimuths(),
+      "theta_o as the angle from the mirror direction, and phi_o as the azimuth about it, 0 "
+      "towards "
+      "the normal");
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
   say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
-  const bool is_one = bands_ ? bands_->read().size() == 1 : layout_.values.size() == 1;
+  const bool is_one = bands_ ? bands_->read().size() == 1 : numbers_.size() == 1;
   say(is_one, "one value for all channels");
   const ValueScale scale =
       layout_.values.empty() ? ValueScale::kLinear : layout_.columns[layout_.values[0]].scale;

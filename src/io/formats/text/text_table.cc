@@ -116,14 +116,23 @@ bool IsNumber(std::string_view cell) {
   return ToNumber(cell).has_value() || DecimalCommaNumber(cell).has_value();
 }
 
-// Whether a line of numbers above the rows says how many there are, and is none of them.
-bool IsLineOfCounts(std::string_view line, size_t cells_read) {
-  if (line.find_first_not_of("0123456789,;| \t") != std::string_view::npos) return false;
+bool HasCells(std::string_view line, size_t fewest) {
   std::vector<std::string_view> cells;
-  return std::ranges::none_of(kSeparators, [&](char separator) {
+  return std::ranges::any_of(kSeparators, [&](char separator) {
     SplitRow(line, separator, &cells);
-    return cells.size() >= cells_read;
+    return cells.size() >= fewest;
   });
+}
+
+// Whether a line above the rows says how many there are, and is none of them: it has too few cells,
+// all of them whole numbers. A negative one behind them marks what is missing (RAMI's `.mes`).
+bool IsLineOfCounts(std::string_view line, size_t cells_read) {
+  if (HasCells(line, cells_read)) return false;
+  if (const size_t minus = line.find_last_of('-'); minus != std::string_view::npos) {
+    if (line.find_first_not_of("0123456789.", minus + 1) != std::string_view::npos) return false;
+    line = line.substr(0, minus);
+  }
+  return line.find_first_not_of("0123456789,;| \t") == std::string_view::npos;
 }
 
 }  // namespace
