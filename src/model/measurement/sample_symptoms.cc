@@ -24,58 +24,6 @@ namespace {
 constexpr double kSameValue = 1e-6;  // relative
 constexpr int kMostSamples = 20000;  // that a symptom looks at
 
-// --- exchanged directions ---
-
-struct ExchangedSamples {
-  double log_ratio = 0;    // of the values
-  double log_cosines = 0;  // of cos theta_i / cos theta_o of the first
-};
-
-// wi and wo in the frame whose x axis lies under wi, mirrored to wo[1] >= 0.
-DirectionPair Folded(double theta_i, double theta_o, double azimuth) {
-  return ToDirections(SphericalAngles{
-      .theta_i = theta_i, .phi_i = 0, .theta_o = theta_o, .phi_o = std::abs(azimuth)});
-}
-
-std::vector<ExchangedSamples> ExchangedSamplesOf(const BrdfSamples& samples) {
-  constexpr double kApart = 1.5;
-  constexpr int kMost = 3000;  // pairs are looked for among all of these
-  const double least_cosine = std::cos(DegreesToRadians(4));
-  const BrdfSamples some = EvenlySpread(samples, kMost);
-  std::vector<DirectionPair> pairs(some.size()), exchanged(some.size());
-  for (int j = 0; j < some.size(); ++j) {
-    const SphericalAngles& at = some.directions[j];
-    pairs[j] = Folded(at.theta_i, at.theta_o, AzimuthFromLight(at));
-    exchanged[j] = Folded(at.theta_o, at.theta_i, AzimuthFromLight(at));
-  }
-  std::vector<ExchangedSamples> found;
-  for (int j = 0; j < some.size(); ++j) {
-    const double log_cosines = std::log(pairs[j].wi[2] / pairs[j].wo[2]);
-    const double first = Mean(some.rho[j]);
-    if (!(log_cosines > std::log(kApart) && first > 0)) continue;
-    double nearest = least_cosine;
-    int partner = -1;
-    for (int k = 0; k < some.size(); ++k) {
-      const double near =
-          std::min(Dot(exchanged[j].wi, pairs[k].wi), Dot(exchanged[j].wo, pairs[k].wo));
-      if (near > nearest) {
-        nearest = near;
-        partner = k;
-      }
-    }
-    const double second = partner < 0 ? 0 : Mean(some.rho[partner]);
-    if (second > 0) found.push_back({std::log(first / second), log_cosines});
-  }
-  return found;
-}
-
-template <typename Number>
-double MedianOverPairs(const std::vector<ExchangedSamples>& pairs, const Number& number) {
-  std::vector<double> numbers(pairs.size());
-  std::ranges::transform(pairs, numbers.begin(), number);
-  return Quantile(&numbers, 0.5);
-}
-
 // --- incidences ---
 
 // Points that are spread evenly over the projected hemisphere (Fibonacci's spiral on the disc), of
@@ -104,8 +52,9 @@ double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbe
   std::vector<Seen> seen;
   for (const int j : numbers) {
     const SphericalAngles& at = samples.directions[j];
-    seen.push_back(
-        {Folded(at.theta_i, at.theta_o, AzimuthFromLight(at)).wo, Mean(samples.rho[j]), 0});
+    // Mirrored to one side of the plane of incidence.
+    const Direction wo = ToDirection({at.theta_o, std::abs(AzimuthFromLight(at))});
+    seen.push_back({wo, Mean(samples.rho[j]), 0});
   }
   for (Seen& one : seen) {
     double nearest = DegreesToRadians(10);
@@ -290,22 +239,6 @@ std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples) {
         j);
   }
   return incidences;
-}
-
-CosineSymptom CosineOf(const BrdfSamples& samples) {
-  constexpr size_t kFewestPairs = 20;
-  const std::vector<ExchangedSamples> pairs = ExchangedSamplesOf(samples);
-  if (pairs.size() < kFewestPairs) return {};
-  CosineSymptom symptom{
-      .is_decided = true,
-      .exponent = MedianOverPairs(
-          pairs, [](const auto& pair) { return pair.log_ratio / pair.log_cosines; }),
-      .error = MedianOverPairs(pairs, [](const auto& pair) { return std::abs(pair.log_ratio); })};
-  const double nearer = symptom.exponent > 0 ? 1 : -1;
-  symptom.error_without = MedianOverPairs(pairs, [&](const auto& pair) {
-    return std::abs(pair.log_ratio - nearer * pair.log_cosines);
-  });
-  return symptom;
 }
 
 std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
