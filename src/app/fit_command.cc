@@ -82,6 +82,7 @@ int RunFitOfOne(const std::string& source) {
     PrintLine("kept         the earlier model, of " + run.earlier + ", as " + kPreviousModelName);
   }
   std::cout << std::flush;  // drawing takes a while
+  bool is_full = false;
   if (into == nullptr) {
     PrintSeconds(run.report);
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
@@ -89,14 +90,12 @@ int RunFitOfOne(const std::string& source) {
     if (settings.plots) Status::Stage("drawing pictures");
     const std::string undrawn = WriteOtherFiles(&run, settings, into);
     Status::End();
-    if (!undrawn.empty()) {
-      std::cerr << "trilobe: pictures are missing: " << Printable(undrawn) << "\n";
-    }
+    is_full = !undrawn.empty() && TellMissingPictures(undrawn, out);
     PrintSeconds(run.report);
     PrintLine("written      " + Joined(run.report.files) + " in " + out);
   }
-  return run.report.interrupted ? 128 + InterruptGuard::signal()
-                                : 0;  // as a shell reports such an end
+  if (run.report.interrupted) return 128 + InterruptGuard::signal();  // as a shell reports it
+  return is_full ? 1 : 0;
 }
 
 // A scene says what is fitted and, by its budgets, what models come out.

@@ -3,9 +3,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <iostream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <utility>
 
 #include "app/own_files.h"
@@ -13,6 +16,7 @@
 #include "core/system/content_hash.h"
 #include "fit/reports/fit_report.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe {
@@ -113,6 +117,19 @@ std::vector<std::string> ResultFolder::Files() const {
     return fs::exists(PathOf(name), ignored);
   });
   return files;
+}
+
+bool TellMissingPictures(const std::string& why, const std::string& folder) {
+  constexpr std::uintmax_t kLeast = 1 << 18;  // bytes, as much as a picture takes
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  const bool is_full = !error && space.available < kLeast;
+  std::cerr << "trilobe: pictures are missing: "
+            << (is_full ? "the disk of '" + Printable(folder) +
+                              "' is full; free some space and type the same command again"
+                        : Printable(why))
+            << "\n";
+  return is_full;
 }
 
 // The file that says that a run is complete goes first.

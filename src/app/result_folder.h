@@ -35,6 +35,10 @@ class Inputs {
 // "model.previous.json" of "model.json".
 std::string PreviousName(const std::string& name);
 
+// Says on standard error that pictures of a folder are missing, and why: that the disk is full, if
+// it is. Returns whether it is, which is a failure; a missing gnuplot is none.
+bool TellMissingPictures(const std::string& why, const std::string& folder);
+
 // A folder with the files of one run. When the first file of a new run is complete, all files of
 // the earlier run are removed, so the files of two runs never mix, however the program ends. Other
 // files are kept. Not thread-safe.

@@ -84,7 +84,7 @@ std::string RiseText(const MaterialFit& fit) {
 
 const char* HeadOf(const PruneDecision& decision) {
   if (decision.adds) return decision.taken ? "  added:    " : "  not added: ";
-  return decision.taken ? "  left out: " : "  kept:     ";
+  return decision.taken ? "  left out: " : "  not taken: ";
 }
 
 void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
@@ -258,6 +258,13 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
       << AlignRight("", 27) << AlignRight(Text(seconds, 3), 9) << "\n"
       << Text(run.seconds, 3) << " seconds side by side on " << run.threads << " threads"
       << (run.reused > 0 ? ", reckoned from what the parts took when they were made" : "") << "\n";
+  constexpr double kMuch = 0.1;
+  if (std::ranges::any_of(run.fits, [](const MaterialFit& fit) {
+        return RelativeRise(fit.full, fit.pruned) > kMuch;
+      })) {
+    out << "E is the error that fits minimise. It may rise by much and not be seen where it was "
+           "small: the verdicts below say what a person sees.\n";
+  }
   for (const MaterialFit& fit : run.fits) PrintDecisions(run, fit, out);
   for (const auto& [material, error] : run.failures) {
     out << "\n" << Printable(material) << " failed: " << error << "\n";

@@ -176,12 +176,13 @@ std::vector<std::pair<std::string, std::string>> SettingOf(const std::vector<Stu
           {"date", first == last ? first : first + " to " + last}};
 }
 
-// Draws the figures of all problems; says on standard error if it cannot.
-void DrawFigures(const std::vector<StudyRun>& runs, const std::string& out, int threads,
+// Draws the figures of all problems; says on standard error if it cannot. Returns whether the disk
+// is full.
+bool DrawFigures(const std::vector<StudyRun>& runs, const std::string& out, int threads,
                  StudyPageContents* contents) {
   if (!HaveGnuplot()) {
     std::cerr << "trilobe: no pictures, as gnuplot is not installed\n";
-    return;
+    return false;
   }
   struct Task {
     std::string problem;  // "": all
@@ -216,9 +217,7 @@ void DrawFigures(const std::vector<StudyRun>& runs, const std::string& out, int 
     (task.problem.empty() ? contents->profiles : contents->figures[task.problem])
         .push_back(task.figure);
   }
-  if (!failure.empty()) {
-    std::cerr << "trilobe: pictures are missing: " << Printable(failure) << "\n";
-  }
+  return !failure.empty() && TellMissingPictures(failure, out);
 }
 
 void PrintStudy(const std::vector<StudyRun>& runs) {
@@ -235,8 +234,8 @@ void PrintStudy(const std::vector<StudyRun>& runs) {
   for (const std::string& sentence : VerdictOn(runs)) std::cout << Printable(sentence) << "\n";
 }
 
-// Tables, figures and the page of all runs, and what is printed.
-void Gather(std::vector<StudyJob> jobs, std::span<const std::string> arguments,
+// Tables, figures and the page of all runs, and what is printed. Returns whether the disk is full.
+bool Gather(std::vector<StudyJob> jobs, std::span<const std::string> arguments,
             const ResultFolder& summary) {
   std::vector<StudyRun> runs;
   StudyPageContents contents;
@@ -248,7 +247,7 @@ void Gather(std::vector<StudyJob> jobs, std::span<const std::string> arguments,
   contents.setting = SettingOf(runs, CommandText(arguments));
   contents.tables = {kRunsName, kMethodsName, kTracesName};
   if (ProblemsOf(runs).size() >= kFewestProblems) contents.tables.emplace_back(kProfilesName);
-  DrawFigures(runs, summary.path(), ThreadsFromFlags(), &contents);
+  const bool is_full = DrawFigures(runs, summary.path(), ThreadsFromFlags(), &contents);
   const auto write = [&](const char* name, const std::string& text) {
     WriteFile(summary.PathOf(name), [&](std::ostream& out) { out << text; });
   };
@@ -258,6 +257,7 @@ void Gather(std::vector<StudyJob> jobs, std::span<const std::string> arguments,
   if (contents.tables.size() > 3) write(kProfilesName, ProfilesCsv(runs));
   write(kStudyPageName, StudyPage(runs, contents));
   PrintStudy(runs);
+  return is_full;
 }
 
 void PrintRun(const StudyJob& job, size_t done, size_t count) {
@@ -326,10 +326,11 @@ int RunStudy(std::span<const std::string> arguments) {
   const bool whole = FLAGS_shard.empty();
   const bool failed =
       std::ranges::any_of(jobs, [](const StudyJob& job) { return job.run.failed(); });
-  if (whole) Gather(std::move(jobs), arguments, summary);
+  const bool is_full = whole && Gather(std::move(jobs), arguments, summary);
   std::cout << "written      a folder for each run" << (whole ? ", the tables and " : "")
             << (whole ? kStudyPageName : "") << " in " << Printable(out) << "\n";
-  return failed ? kSomeFailed : 0;
+  if (failed) return kSomeFailed;
+  return is_full ? 1 : 0;
 }
 
 }  // namespace

@@ -262,9 +262,10 @@ std::vector<std::string> WriteForRenderer(const Measurement& measurement, const 
   RglExportOptions rgl = RglOptionsOf(options);
   Stopwatch stopwatch;
   const FitResult fit = FitToHelp(measurement, options.num_threads);
-  const std::string fitted = "fitted " + measurement.source + " by " +
-                             std::to_string(fit.stored_parameters) + " parameters, in " +
-                             Text(stopwatch.Lap(), 2) + " s";
+  const std::string fitted =
+      "fitted " + measurement.source + " by " + std::to_string(fit.stored_parameters) +
+      " parameters, in " + Text(stopwatch.Lap(), 2) +
+      " s (`trilobe fit` once, and convert its model.json, for several files)";
   if (IsStandardMaterial(path)) {
     std::vector<std::string> lines = WriteStandard(fit.file, measurement.source, path, options);
     lines.insert(lines.begin(), fitted);
