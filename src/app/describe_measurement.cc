@@ -266,7 +266,13 @@ void DescribeScattered(const Measurement& measurement) {
   if (measurement.out_of_gamut > 0) {
     PrintLine("out of gamut, set to 0", std::to_string(measurement.out_of_gamut));
   }
-  if (counts.valid == 0) return;
+  const auto print_notes = [&] {
+    for (const std::string& note : measurement.notes) PrintLine("note", note);
+  };
+  if (counts.valid == 0) {
+    print_notes();
+    return;
+  }
   const auto text = [](const AngleRange& angles) {
     return Text(angles.min_deg) + " to " + Text(angles.max_deg) + " deg, " +
            std::to_string(angles.values) + (angles.values == 1 ? " value" : " values");
@@ -298,7 +304,7 @@ void DescribeScattered(const Measurement& measurement) {
     PrintLine("cannot be checked", undecided);
   }
   if (!picture.empty()) PrintLine("written", picture);
-  for (const std::string& note : measurement.notes) PrintLine("note", note);
+  print_notes();
 }
 
 }  // namespace

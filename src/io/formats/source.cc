@@ -176,12 +176,18 @@ void DropBadReadings(const SourceOptions& options, bool is_rgl, Measurement* mea
     }
     return;
   }
-  if (!options.outliers) LeaveOutZeroGaps(measurement);
+  if (!options.outliers) {
+    LeaveOutMarks(measurement);
+    LeaveOutZeroGaps(measurement);
+  }
   ChangeUnless(options.dark_noise, "--dark_noise takes readings of a table that are lost in it",
                measurement, [&](Measurement* of) { SmoothDarkReadings(threads, of); });
   ChangeUnless(options.outliers, "--outliers takes readings that are far off those around them",
                measurement, [&](Measurement* of) {
-                 if (options.outliers) LeaveOutZeroGaps(of);
+                 if (options.outliers) {
+                   LeaveOutMarks(of);
+                   LeaveOutZeroGaps(of);
+                 }
                  LeaveOutOutliers(threads, of);
                });
 }

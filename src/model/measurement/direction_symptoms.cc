@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -328,36 +329,80 @@ double LogarithmicSpread(std::vector<double>* logarithms) {
 
 }  // namespace
 
-AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
-  struct Rings {
-    std::vector<double> inner, outer;  // logarithms of values
-  };
-  constexpr size_t kFewest = 6;  // values in a ring
-  // By theta_i and phi_i: turned materials may change near the normal.
-  std::map<std::pair<int, int>, Rings> incidences;
+namespace {
+
+// The spread of values at theta_o = 0 with the azimuth, median over the incidences: they are of one
+// direction, the normal, unless that angle is counted from elsewhere. Below 0 if there is none.
+double SpreadAtNormal(const BrdfSamples& samples) {
+  constexpr double kNormal = 0.005, kSame = 1e-4;  // [rad]
+  constexpr size_t kFewest = 4, kFewestIncidences = 2;
+  std::map<std::pair<int64_t, int64_t>, std::vector<double>> incidences;
   for (int j = 0; j < samples.size(); ++j) {
-    constexpr double kStep = 10, kRounding = 0.01;
-    const double theta_i = RadiansToDegrees(samples.directions[j].theta_i);
-    const double theta_o = RadiansToDegrees(samples.directions[j].theta_o);
+    const SphericalAngles& at = samples.directions[j];
     const double mean = Mean(samples.rho[j]);
-    if (!(theta_i > 30 - kRounding && theta_i < 60 + kRounding && mean > 0)) continue;
-    const double phi_i = RadiansToDegrees(samples.directions[j].phi_i) + kRounding;
-    const double turn = phi_i - 360 * std::floor(phi_i / 360);
-    Rings& rings = incidences[{static_cast<int>((theta_i + kRounding) / kStep),
-                               static_cast<int>(turn / kStep)}];
-    if (theta_o < 25 + kRounding) rings.inner.push_back(std::log(mean));
-    if (theta_o > 65 - kRounding) rings.outer.push_back(std::log(mean));
+    if (at.theta_o > kNormal || at.theta_i < DegreesToRadians(10) || !(mean > 0)) continue;
+    incidences[{std::llround(at.theta_i / kSame), std::llround(at.phi_i / kSame)}].push_back(
+        std::log(mean));
   }
-  std::vector<double> inner, outer;
-  for (auto& [step, rings] : incidences) {
-    if (rings.inner.size() < kFewest || rings.outer.size() < kFewest) continue;
-    inner.push_back(LogarithmicSpread(&rings.inner));
-    outer.push_back(LogarithmicSpread(&rings.outer));
+  std::vector<double> spreads;
+  for (auto& [light, logarithms] : incidences) {
+    if (logarithms.size() >= kFewest) spreads.push_back(LogarithmicSpread(&logarithms));
   }
-  constexpr size_t kFewestIncidences = 2;  // one may stand near a highlight
-  if (inner.size() < kFewestIncidences) return {};
-  return {
-      .is_decided = true, .near_normal = UpperMedian(inner), .near_horizon = UpperMedian(outer)};
+  return spreads.size() < kFewestIncidences ? -1 : UpperMedian(std::move(spreads));
+}
+
+struct LogValue {
+  HalfDiffAngles at;
+  double log = 0;
+};
+
+// Variance of log rho within bins of theta_h, and in each of theta_d, that hold as many samples
+// each: what a function of the two leaves of it.
+double VarianceInBins(std::vector<LogValue> values) {
+  constexpr size_t kHalf = 8, kDifference = 3;
+  const auto bin_of = [](std::span<LogValue> all, size_t bin, size_t bins) {
+    const size_t begin = bin * all.size() / bins, end = (bin + 1) * all.size() / bins;
+    return all.subspan(begin, end - begin);
+  };
+  std::ranges::sort(values, {}, [](const LogValue& one) { return one.at.theta_h; });
+  double left = 0;
+  for (size_t h = 0; h < kHalf; ++h) {
+    const std::span<LogValue> row = bin_of(values, h, kHalf);
+    std::ranges::sort(row, {}, [](const LogValue& one) { return one.at.theta_d; });
+    for (size_t d = 0; d < kDifference; ++d) {
+      const std::span<LogValue> bin = bin_of(row, d, kDifference);
+      double mean = 0;
+      for (const LogValue& one : bin) mean += one.log / static_cast<double>(bin.size());
+      for (const LogValue& one : bin) left += std::pow(one.log - mean, 2);
+    }
+  }
+  return left / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+ElevationSymptom ElevationsOf(const BrdfSamples& samples) {
+  constexpr size_t kFewest = 48;
+  const double least = DegreesToRadians(1), most = kPi / 2 - least;
+  std::vector<LogValue> as_read, as_elevations;
+  for (int j = 0; j < samples.size(); ++j) {
+    SphericalAngles at = samples.directions[j];
+    const double mean = Mean(samples.rho[j]);
+    if (std::min(at.theta_i, at.theta_o) < least || std::max(at.theta_i, at.theta_o) > most) {
+      continue;
+    }
+    if (!(mean > 0)) continue;
+    as_read.push_back({samples.angles[j], std::log(mean)});
+    at.theta_i = kPi / 2 - at.theta_i;
+    at.theta_o = kPi / 2 - at.theta_o;
+    as_elevations.push_back({ToHalfDiff(ToDirections(at)), std::log(mean)});
+  }
+  ElevationSymptom symptom = {.at_normal = SpreadAtNormal(samples)};
+  if (as_read.size() >= kFewest) {
+    symptom.as_read = VarianceInBins(std::move(as_read));
+    symptom.as_elevations = VarianceInBins(std::move(as_elevations));
+  }
+  return symptom;
 }
 
 }  // namespace trilobe

@@ -117,8 +117,13 @@ BrdfSamples SamplesOf(const Measurement& measurement) {
     throw ErrorIn(
         ErrorKind::kData, measurement.source,
         "no valid sample of " + std::to_string(measurement.counts.total) +
-            ": nowhere are both directions above the surface and all values finite and >= 0, "
-            "within --max_angle and --min_theta_d; trilobe info counts why")
+            std::string(
+                ": nowhere are both directions above the surface and all values finite and >= 0, "
+                "within --max_angle and --min_theta_d; trilobe info counts why") +
+            (2.0 * measurement.counts.negative > measurement.counts.total
+                 ? "; most are negative, as decibels and logarithms are, which --columns calls db, "
+                   "log10 or ln"
+                 : ""))
         .About("samples", 0);
   }
   BrdfSamples samples = measurement.samples;
@@ -228,6 +233,20 @@ void LeaveOutFill(Measurement* measurement) {
       " theta_o repeat, to the bit, the values of the one before: " +
       std::to_string(filled.samples.size()) +
       " samples seem to be filled in, not measured, and are left out; --extrapolated takes them");
+}
+
+void LeaveOutMarks(Measurement* measurement) {
+  if (NotNull(measurement, "the measurement").table) return;
+  CheckDirections(*measurement);
+  const BrdfSamples& samples = measurement->samples;
+  const LargestValueSymptom largest = LargestValueOf(samples);
+  if (!largest.IsMark(samples.size())) return;
+  std::vector<int> marks;
+  for (int j = 0; j < samples.size(); ++j) {
+    if (HasLargest(largest, samples, j)) marks.push_back(j);
+  }
+  KeepAllBut(marks, &BinCounts::missing, measurement);
+  measurement->notes.push_back(MarkText(largest) + ", and is left out; --outliers takes it");
 }
 
 void LeaveOutZeroGaps(Measurement* measurement) {

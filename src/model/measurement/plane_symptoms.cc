@@ -25,7 +25,15 @@ class PlaneScan {
   explicit PlaneScan(double theta_i) : theta_i_(theta_i) {}
 
   void Add(double theta, double value) { values_.emplace_back(theta, value); }
-  void Sort() { std::ranges::sort(values_); }
+  // In the order of the angles, of which each counts once, by the darkest: the normal is measured
+  // at each azimuth.
+  void Sort() {
+    constexpr double kSame = 1e-5;
+    std::ranges::sort(values_);
+    const auto same = std::ranges::unique(
+        values_, [](const auto& a, const auto& b) { return std::abs(a.first - b.first) < kSame; });
+    values_.erase(same.begin(), same.end());
+  }
   double theta_i() const { return theta_i_; }
   size_t size() const { return values_.size(); }
 
@@ -38,7 +46,7 @@ class PlaneScan {
   }
 
   // By linear interpolation between samples no more than `gap` apart; none beyond them.
-  std::optional<double> At(double theta, double gap = kPi) const {
+  std::optional<double> At(double theta, double gap) const {
     constexpr double kRounding = 1e-6;
     const auto next = std::ranges::lower_bound(values_, std::pair(theta - kRounding, 0.0));
     if (next == values_.end() || (next == values_.begin() && next->first > theta + kRounding)) {
@@ -58,9 +66,11 @@ class PlaneScan {
       steps.push_back(values_[k].first - values_[k - 1].first);
     }
     const double step = std::max(UpperMedian(std::move(steps)), DegreesToRadians(0.1));
+    const double gap = 2.5 * step;  // further apart, nobody knows what is between
     double sum = 0;
     for (double ring = step; centre + ring < kPi / 2; ring += step) {
-      const double darker = std::min(At(centre - ring).value_or(0), At(centre + ring).value_or(0));
+      const double darker =
+          std::min(At(centre - ring, gap).value_or(0), At(centre + ring, gap).value_or(0));
       sum += darker * std::cos(centre + ring) * 2 * kPi * (std::cos(ring - step) - std::cos(ring));
     }
     return sum;

@@ -42,13 +42,27 @@ double AngleBetween(const Direction& a, const Direction& b) {
   return std::acos(std::clamp(Dot(a, b), -1.0, 1.0));
 }
 
+// A sample of an incidence.
+struct Seen {
+  Direction wo;
+  double rho, reach;  // the cosine of the angle within which it counts
+};
+
+// Samples of one direction are one, however often it was measured: the normal at each azimuth.
+void KeepDarkestOfSame(std::vector<Seen>* seen) {
+  constexpr double kSame = 1e-3;
+  const auto key = [](const Seen& one) {
+    return std::tuple(std::llround(one.wo[0] / kSame), std::llround(one.wo[1] / kSame),
+                      std::llround(one.wo[2] / kSame));
+  };
+  std::ranges::sort(*seen, {}, [&](const Seen& one) { return std::pair(key(one), one.rho); });
+  const auto same = std::ranges::unique(*seen, {}, key);
+  seen->erase(same.begin(), same.end());
+}
+
 double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbers) {
   constexpr int kPoints = 3000;
   static const std::vector<Direction> points = CosinePoints(kPoints);
-  struct Seen {
-    Direction wo;
-    double rho, reach;
-  };
   std::vector<Seen> seen;
   for (const int j : numbers) {
     const SphericalAngles& at = samples.directions[j];
@@ -56,6 +70,7 @@ double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbe
     const Direction wo = ToDirection({at.theta_o, std::abs(AzimuthFromLight(at))});
     seen.push_back({wo, Mean(samples.rho[j]), 0});
   }
+  KeepDarkestOfSame(&seen);
   for (Seen& one : seen) {
     double nearest = DegreesToRadians(10);
     for (const Seen& other : seen) {
@@ -174,27 +189,37 @@ std::string TellRepeated(const BrdfSamples& samples, bool anisotropic) {
 std::vector<int> NumbersBelow(const LargestValueSymptom& largest, const BrdfSamples& samples) {
   std::vector<int> numbers;
   for (int j = 0; j < samples.size(); ++j) {
-    const double times = largest.of_signal ? std::cos(samples.directions[j].theta_i) : 1;
-    const bool is_below = std::ranges::all_of(samples.rho[j], [&](double value) {
-      return times * value <= largest.value * (1 - kSameValue);
-    });
-    if (is_below) numbers.push_back(j);
+    if (!HasLargest(largest, samples, j)) numbers.push_back(j);
   }
   return numbers;
 }
 
 std::string TellLargest(const LargestValueSymptom& largest, int samples) {
   if (largest.IsMark(samples)) {
-    return Sentence(
-        "the value ", largest.value, " is there ", largest.samples, " times, and is ",
-        largest.over_next,
-        " times the next one: it seems to mark what was not measured; leave these lines out");
+    return MarkText(largest) + "; leave these lines out";
   }
   if (largest.IsPlateau(samples)) {
     return Sentence("the largest value is there ", largest.samples,
                     " times, as where a detector is saturated: highlights are brighter than that");
   }
   return "";
+}
+
+// Azimuths up to a turn in radians, of which none is a multiple of half a degree but 0.
+bool AreAzimuthsInRadians(const BrdfSamples& samples) {
+  constexpr double kLeast = 3, kMost = 2 * kPi + 0.01;  // degrees, as they were read
+  constexpr size_t kFewest = 6;
+  std::set<double> azimuths;
+  for (const SphericalAngles& at : samples.directions) {
+    for (const double phi : {at.phi_i, at.phi_o}) {
+      const double degrees = std::abs(RadiansToDegrees(phi));
+      if (degrees > kMost) return false;
+      if (degrees == 0) continue;
+      if (std::abs(std::remainder(degrees, 0.5)) < 1e-9) return false;
+      azimuths.insert(degrees);
+    }
+  }
+  return azimuths.size() >= kFewest && *azimuths.rbegin() > kLeast;
 }
 
 std::string TellAngles(const BrdfSamples& samples) {
@@ -204,29 +229,38 @@ std::string TellAngles(const BrdfSamples& samples) {
     largest = std::max({largest, at.theta_i, at.theta_o});
   }
   // A right angle in radians, read as so many degrees.
-  if (samples.size() < kFewest || !(largest > 0 && largest < DegreesToRadians(kPi / 2))) return "";
-  return Sentence("no polar angle is above ", RadiansToDegrees(largest),
-                  " degrees: angles seem to be in radians; name the columns so, as theta_i_rad");
+  if (samples.size() >= kFewest && largest > 0 && largest < DegreesToRadians(kPi / 2)) {
+    return Sentence("no polar angle is above ", RadiansToDegrees(largest),
+                    " degrees: angles seem to be in radians; name the columns so, as theta_i_rad");
+  }
+  if (!AreAzimuthsInRadians(samples)) return "";
+  return "no azimuth is above 6.3 degrees: azimuths seem to be in radians; name their columns so, "
+         "as phi_o_rad";
 }
 
 std::string TellElevation(const BrdfSamples& samples) {
-  const AzimuthSymptom azimuths = AzimuthsOf(samples);
-  if (!azimuths.IsElevation()) return "";
-  return Sentence(
-      "values change with the azimuth by a factor of ", std::exp(azimuths.near_normal),
-      " near theta_o = 0, where azimuths are close to one another, and of ",
-      std::exp(azimuths.near_horizon),
-      " near 90: angles seem to be elevations, counted from the horizon; write 90 minus "
-      "them, or name the columns so, --columns=elevation_i=NAME,elevation_o=NAME,phi_o=NAME,f=NAME "
-      "by the names of the header");
+  const ElevationSymptom elevations = ElevationsOf(samples);
+  if (!elevations.IsThere()) return "";
+  const std::string why =
+      elevations.at_normal >= 0
+          ? Sentence("values change with the azimuth by a factor of ",
+                     std::exp(elevations.at_normal),
+                     " at theta_o = 0, where all azimuths are one direction")
+          : Sentence("90 degrees minus the angles make values a function of the half vector to ",
+                     WholePercent(std::sqrt(elevations.as_elevations)), " %, and the angles to ",
+                     WholePercent(std::sqrt(elevations.as_read)), " %");
+  return why +
+         ": angles seem to be elevations, counted from the horizon; write 90 minus them, or name "
+         "the columns so, --columns=elevation_i=NAME,elevation_o=NAME,phi_o=NAME,f=NAME by the "
+         "names of the header";
 }
 
 std::string TellNegative(const BinCounts& counts) {
   if (2 * static_cast<int64_t>(counts.negative) <= counts.total) return "";
   return Sentence(
       counts.negative, " of ", counts.total,
-      " values are negative, as decibels are, and left out; a column that --columns or its header "
-      "calls db is read as 10^(dB/10)");
+      " values are negative, as decibels are, or logarithms, and left out; a column that --columns "
+      "or its header calls db is read as 10^(dB/10), log10 as 10^x, and ln as e^x");
 }
 
 }  // namespace
@@ -291,6 +325,20 @@ RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotr
   return repeated;
 }
 
+namespace {
+
+// Two pairs of directions have the same if they are one, exchanged or mirrored: then values are
+// equal without a fault.
+std::tuple<int64_t, int64_t, int64_t> KindOfPair(const SphericalAngles& at) {
+  constexpr double kStep = 1e-4;  // [rad]
+  const auto rounded = [](double x) { return static_cast<int64_t>(std::llround(x / kStep)); };
+  const auto [low, high] = std::minmax(at.theta_i, at.theta_o);
+  const bool has_azimuth = rounded(low) > 0;
+  return {rounded(low), rounded(high), has_azimuth ? rounded(std::cos(AzimuthFromLight(at))) : 0};
+}
+
+}  // namespace
+
 LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
   LargestValueSymptom found;
   for (const bool of_signal : {false, true}) {
@@ -301,7 +349,8 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
       double largest = 0, next = 0;
       for (int j = 0; j < samples.size(); ++j) largest = std::max(largest, value(j));
       if (!(largest > 0)) continue;
-      int count = 0;
+      std::set<std::tuple<int64_t, int64_t, int64_t>> pairs;
+      std::vector<double> half_angles;
       std::set<int64_t> theta_h, theta_i;
       constexpr double kStep = 1e-4;  // [rad]
       for (int j = 0; j < samples.size(); ++j) {
@@ -309,20 +358,36 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
           next = std::max(next, value(j));
           continue;
         }
-        ++count;
+        pairs.insert(KindOfPair(samples.directions[j]));
+        half_angles.push_back(samples.angles[j].theta_h);
         theta_h.insert(std::llround(samples.angles[j].theta_h / kStep));
         if (of_signal) theta_i.insert(std::llround(samples.directions[j].theta_i / kStep));
       }
+      const int count = static_cast<int>(half_angles.size());
       if (count <= found.samples) continue;
       found = {.value = largest,
                .samples = count,
+               .pairs = static_cast<int>(pairs.size()),
                .angles = static_cast<int>(std::max(theta_h.size(), theta_i.size())),
+               .theta_h = Quantile(&half_angles, 0.5),
                .over_next = next > 0 ? largest / next : std::numeric_limits<double>::infinity(),
                .is_nines = !of_signal && IsNines(largest),
                .of_signal = of_signal};
     }
   }
   return found;
+}
+
+bool HasLargest(const LargestValueSymptom& largest, const BrdfSamples& samples, int j) {
+  const double times = largest.of_signal ? std::cos(samples.directions[j].theta_i) : 1;
+  return std::ranges::any_of(samples.rho[j], [&](double value) {
+    return times * value > largest.value * (1 - kSameValue);
+  });
+}
+
+std::string MarkText(const LargestValueSymptom& largest) {
+  return Sentence("the value ", largest.value, " is there ", largest.samples, " times, and is ",
+                  largest.over_next, " times the next one: it seems to mark what was not measured");
 }
 
 namespace {
@@ -343,6 +408,7 @@ std::vector<std::string> Symptoms(const Measurement& scattered, bool have_gaps) 
   if (scattered.samples.size() > 0) {
     const BrdfSamples some = EvenlySpread(scattered.samples, kMostSamples);
     told.push_back(TellAngles(some));
+    if (!told.back().empty()) return {told.back()};  // all lies in one place
     told.push_back(TellReflected(some));
     told.push_back(TellLargest(largest, scattered.samples.size()));
     told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
@@ -376,8 +442,8 @@ std::string UndecidedIn(const Measurement& scattered) {
             ? "where azimuths are counted from (no clear highlight)"
             : "where azimuths and theta_o are counted from (no clear highlight)");
   }
-  if (!AzimuthsOf(some).is_decided) {
-    undecided.emplace_back("elevations (few azimuths near the normal and the horizon)");
+  if (!ElevationsOf(some).IsDecided()) {
+    undecided.emplace_back("elevations (values are no function of the half vector either way)");
   }
   std::string text;
   for (const std::string& one : undecided) text += (text.empty() ? "" : "; ") + one;

@@ -39,16 +39,24 @@ struct HighlightSymptom {
 };
 HighlightSymptom HighlightOf(const BrdfSamples& samples);
 
-// Variation of values with the azimuth near the normal, where azimuths are close to one another,
-// and near the horizon: medians over incidences from 30 to 60 degrees of log(90th / 10th
-// percentile) at theta_o up to 25 and from 65 degrees on, where no mirror direction is. Angles from
-// the horizon in the place of those from the normal exchange the two.
-struct AzimuthSymptom {
-  bool is_decided = false;  // samples stand at such azimuths
-  double near_normal = 0, near_horizon = 0;
-  bool IsElevation() const { return near_normal > 0.1 && near_normal > 1.35 * near_horizon; }
+// Whether angles are counted from the horizon. At theta_o = 0 all azimuths are one direction, whose
+// spread, the median over the incidences of log(90th / 10th percentile), decides where it was
+// measured. Else it is the reading in which log rho is more nearly a function of theta_h and
+// theta_d: variances that such a function leaves, as angles were read and with 90 degrees minus
+// each.
+struct ElevationSymptom {
+  double at_normal = -1;  // below 0: not measured
+  double as_read = 0, as_elevations = 0;
+  bool IsDecided() const { return at_normal >= 0 || IsThere() || IsReadRightly(); }
+  bool IsThere() const {
+    if (at_normal >= 0) return at_normal > 0.3;
+    return as_read > 0.02 && as_elevations < as_read / 2;
+  }
+
+ private:
+  bool IsReadRightly() const { return as_elevations > 0.02 && as_read < as_elevations / 2; }
 };
-AzimuthSymptom AzimuthsOf(const BrdfSamples& samples);
+ElevationSymptom ElevationsOf(const BrdfSamples& samples);
 
 // The least that comes back of the light of each incidence that was measured: the sum of rho cos
 // theta_o over the directions that lie within one and a half spacings of a sample of that
@@ -86,23 +94,33 @@ struct RepeatedDirections {
 };
 RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotropic);
 
-// The largest value of a channel, or the largest signal, rho cos theta_i, to 1e-6: how often it is
-// there, at how many theta_h (of signals: or theta_i, if these are more), and how many times as
-// large as the next it is. The same value at one theta_h is what a BRDF of theta_h has. A value of
-// nines, as 9999, is a mark whatever the next is.
+// The largest value of a channel, or the largest signal, rho cos theta_i, to 1e-6: how often and at
+// how many pairs of directions it is there, of which two that are exchanged, mirrored, or at the
+// normal count once, at how many theta_h (of signals: or theta_i, if these are more), and how many
+// times as large as the next it is. The same value at one theta_h is what a BRDF of theta_h has. A
+// value of nines, as 9999, is a mark whatever the next is; another that stands about the mirror
+// direction is a highlight.
 struct LargestValueSymptom {
   double value = 0;
-  int samples = 0, angles = 0;
+  int samples = 0, pairs = 0, angles = 0;
+  double theta_h = 0;  // [rad] the median
   double over_next = 1;
   bool is_nines = false, of_signal = false;
   bool IsMark(int valid) const {
-    return samples >= 2 && samples <= valid / 2 && (over_next >= 20 || is_nines);
+    constexpr double kHighlight = 0.1;  // [rad]
+    return pairs >= 2 && samples <= valid / 2 &&
+           (is_nines || (over_next >= 20 && theta_h > kHighlight));
   }
   bool IsPlateau(int valid) const {
-    return angles >= 3 && samples >= 4 && samples <= valid / 2 && !IsMark(valid);
+    return angles >= 3 && pairs >= 4 && samples <= valid / 2 && !IsMark(valid);
   }
 };
 LargestValueSymptom LargestValueOf(const BrdfSamples& samples);
+// Whether a sample has it.
+bool HasLargest(const LargestValueSymptom& largest, const BrdfSamples& samples, int j);
+// "the value 9999 is there 52 times, and is 8645 times the next one: it seems to mark what was not
+// measured".
+std::string MarkText(const LargestValueSymptom& largest);
 
 // Azimuth from -pi to pi; 0 on the side of the light.
 inline double AzimuthFromLight(const SphericalAngles& at) {

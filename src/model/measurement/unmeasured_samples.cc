@@ -104,10 +104,34 @@ std::vector<int> ZerosInShadow(const BrdfSamples& samples) {
 
 }  // namespace
 
+namespace {
+
+// Whether 0 is far below all else that was measured, and no next level of a detector.
+bool AreZerosApart(const BrdfSamples& samples) {
+  constexpr double kDark = 0.1;
+  std::vector<double> lit;
+  for (const Rgb& rho : samples.rho) {
+    if (!IsZero(rho)) lit.push_back(Mean(rho));
+  }
+  if (2 * lit.size() < samples.rho.size()) return false;
+  const double least = std::ranges::min(lit), median = Quantile(&lit, 0.5);
+  return least > kDark * median && LastLevel(lit) < 3 * kDark * median;
+}
+
+}  // namespace
+
 std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
   constexpr int kMostOf = 5;
   const auto zeros = std::ranges::count_if(samples.rho, IsZero);
-  if (zeros == 0 || kMostOf * zeros > samples.size()) return {};
+  if (zeros == 0) return {};
+  if (AreZerosApart(samples)) {
+    std::vector<int> all;
+    for (int j = 0; j < samples.size(); ++j) {
+      if (IsZero(samples.rho[j])) all.push_back(j);
+    }
+    return all;
+  }
+  if (kMostOf * zeros > samples.size()) return {};
   std::vector<int> gaps = ZerosInShadow(samples);
   for (const auto& [light, numbers] : ByLight(samples)) {
     std::vector<Lit> lit;

@@ -14,7 +14,8 @@ namespace trilobe {
 // at least half of this, and not all are the same. Or, whatever
 // their light, zeros that nearly fill a cone of up to 20 degrees about it. None if fewer than one
 // in 500 samples are such, or if more than a fifth of all samples are 0: then 0 is what dark is.
-// Ascending.
+// All zeros are gaps where up to half of the samples are 0 and the darkest of the others is above a
+// tenth of their median. Ascending.
 std::vector<int> FindZeroGaps(const BrdfSamples& samples);
 
 // Samples on a grid of theta_i, theta_o and phi_o - phi_i that were filled in: where a theta_i (or

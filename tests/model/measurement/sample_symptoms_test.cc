@@ -11,6 +11,7 @@
 #include "io/formats/source_option.h"
 #include "model/measurement/unmeasured_samples.h"
 #include "tests/error_of.h"
+#include "tests/model/measurement/goniometer.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
 #include "trilobe/core/base/angles.h"
@@ -23,31 +24,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-// A glossy material, at a goniometer's directions: six theta_i, seventeen theta_o, each 15 degrees.
-double Glossy(const SphericalAngles& at) {
-  const HalfDiffAngles half = ToHalfDiff(ToDirections(at));
-  return 0.05 + 0.02 * std::cos(half.theta_d) + 0.5 * std::exp(-half.theta_h * half.theta_h / 0.02);
-}
-
-template <typename Change>
-Measurement Goniometer(const Change& change, int step_deg = 15) {
-  SampleCollector collector("x.csv", "test");
-  for (const double theta_i : {5.0, 15.0, 30.0, 45.0, 60.0, 70.0}) {
-    for (int theta_o = 0; theta_o <= 80; theta_o += 5) {
-      for (int phi = 0; phi < 360; phi += step_deg) {
-        SphericalAngles at = {.theta_i = DegreesToRadians(theta_i),
-                              .phi_i = 0,
-                              .theta_o = DegreesToRadians(theta_o),
-                              .phi_o = DegreesToRadians(phi)};
-        double rho = Glossy(at);
-        change(&at, &rho);
-        collector.Add(at, {rho, rho, rho});
-      }
-    }
-  }
-  return collector.Take();
-}
 
 template <typename Change>
 std::vector<std::string> Told(const Change& change) {
@@ -125,6 +101,29 @@ void WriteElevations(SphericalAngles* at, double* rho) {
   *rho = 0.02 + 0.5 * std::exp(-theta_h * theta_h / 0.2);
   at->theta_i = kPi / 2 - at->theta_i;
   at->theta_o = kPi / 2 - at->theta_o;
+}
+
+// A glossy material at polar angles from 10 to 80 degrees, the angles as they are or elevations.
+Measurement Selected10To80(bool as_elevations) {
+  SampleCollector collector("x.csv", "test");
+  for (const double theta_i : {10.0, 30.0, 50.0, 70.0}) {
+    for (int theta_o = 10; theta_o <= 80; theta_o += 10) {
+      for (int phi = 0; phi < 360; phi += 30) {
+        SphericalAngles at = {.theta_i = DegreesToRadians(theta_i),
+                              .phi_i = 0,
+                              .theta_o = DegreesToRadians(theta_o),
+                              .phi_o = DegreesToRadians(phi)};
+        const double theta_h = ToHalfDiff(ToDirections(at)).theta_h;
+        const double rho = 0.02 + 0.5 * std::exp(-theta_h * theta_h / 0.2);
+        if (as_elevations) {
+          at.theta_i = kPi / 2 - at.theta_i;
+          at.theta_o = kPi / 2 - at.theta_o;
+        }
+        collector.Add(at, {rho, rho, rho});
+      }
+    }
+  }
+  return collector.Take();
 }
 
 // Light from several azimuths hides no fault.
@@ -341,64 +340,39 @@ TEST(SampleSymptoms, TheCosineIsGivenByAText) {
   }
 }
 
-TEST(UnmeasuredSamples, ZerosAmidLightAreGaps) {
-  int lost = 0;
-  const Measurement shadow = Goniometer([&](SphericalAngles* at, double* rho) {
-    if (at->phi_o == 0 && at->theta_o > 0 && std::abs(at->theta_o - at->theta_i) < 0.1) {
-      *rho = 0;
-      ++lost;
+TEST(SampleSymptoms, AzimuthsInRadiansAreTold) {
+  const auto shrink = [](SphericalAngles* at, double*) { at->phi_o = DegreesToRadians(at->phi_o); };
+  EXPECT_THAT(Told(shrink), ElementsAre(HasSubstr("as phi_o_rad")));
+}
+
+// Sharp highlights, and all azimuths at the normal, on a coarse grid.
+TEST(SampleSymptoms, CleanCoarseGridsHaveNone) {
+  for (const double width : {0.0005, 0.005, 0.02, 0.2}) {
+    SampleCollector collector("x.csv", "test");
+    for (const double theta_i : {0.0, 15.0, 30.0, 45.0, 60.0}) {
+      for (int theta_o = 0; theta_o <= 75; theta_o += 15) {
+        for (int phi = 0; phi < 360; phi += 30) {
+          const SphericalAngles at = {.theta_i = DegreesToRadians(theta_i),
+                                      .phi_i = 0,
+                                      .theta_o = DegreesToRadians(theta_o),
+                                      .phi_o = DegreesToRadians(phi)};
+          const HalfDiffAngles half = ToHalfDiff(ToDirections(at));
+          const double rho = 0.02 + 0.02 * (1 + half.theta_d) / width *
+                                        std::exp(-half.theta_h * half.theta_h / width);
+          collector.Add(at, {rho, rho, rho});
+        }
+      }
     }
-  });
-  EXPECT_EQ(FindZeroGaps(shadow.samples).size(), lost);
-  for (const int j : FindZeroGaps(shadow.samples)) EXPECT_EQ(shadow.samples.rho[j][0], 0);
-  // The end of a highlight of a black material, below the last level of its detector.
-  const Measurement dark = Goniometer([&](SphericalAngles*, double* rho) {
-    *rho = std::floor(1000 * std::max(*rho - 0.0505, 0.0)) / 1000;
-  });
-  EXPECT_THAT(FindZeroGaps(dark.samples), IsEmpty());
+    EXPECT_THAT(SymptomsOfSamples(collector.Take()), IsEmpty()) << width;
+  }
 }
 
-TEST(UnmeasuredSamples, ZerosAboutTheLightAreGapsWhereEachSampleHasItsOwn) {
-  int lost = 0, k = 0;
-  const auto scattered = [&](double reach_deg) {
-    return Goniometer([&, reach_deg](SphericalAngles* at, double* rho) {
-      at->theta_i += 1e-4 * ++k;
-      const DirectionPair pair = ToDirections(*at);
-      if (Dot(pair.wi, pair.wo) < std::cos(DegreesToRadians(reach_deg))) return;
-      *rho = 0;
-      ++lost;
-    });
+TEST(SampleSymptoms, ElevationsAreToldWithoutTheNormal) {
+  const auto told = [](bool as_elevations) {
+    return SymptomsOfSamples(Selected10To80(as_elevations));
   };
-  const Measurement shadow = scattered(12);
-  EXPECT_GT(lost, 20);
-  EXPECT_EQ(FindZeroGaps(shadow.samples).size(), lost);
-  // These zeros reach too far from the light for the shadow of a detector.
-  EXPECT_THAT(FindZeroGaps(scattered(35).samples), IsEmpty());
-}
-
-TEST(UnmeasuredSamples, AnglesThatRepeatTheOneBeforeWereFilledIn) {
-  const Measurement filled = Goniometer([](SphericalAngles* at, double* rho) {
-    SphericalAngles seen = *at;
-    seen.theta_i = std::min(at->theta_i, DegreesToRadians(60));
-    seen.theta_o = std::min(at->theta_o, DegreesToRadians(70));
-    *rho = Glossy(seen);
-  });
-  const FilledSamples found = FindFilled(filled.samples);
-  EXPECT_EQ(found.theta_i, 1);
-  EXPECT_EQ(found.theta_o, 2);
-  EXPECT_EQ(found.samples.size(), 17 * 24 + 5 * 2 * 24);
-  EXPECT_THAT(
-      FindFilled(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.3; }).samples).samples,
-      IsEmpty());
-  EXPECT_THAT(FindFilled(Goniometer([](SphericalAngles*, double*) {}).samples).samples, IsEmpty());
-  const Measurement matt_outside = Goniometer([](SphericalAngles* at, double* rho) {
-    if (at->theta_o > DegreesToRadians(50)) *rho = 0.05;
-  });
-  EXPECT_THAT(FindFilled(matt_outside.samples).samples, IsEmpty());
-  Measurement measurement = filled;
-  LeaveOutFill(&measurement);
-  EXPECT_EQ(measurement.counts.extrapolated, found.samples.size());
-  EXPECT_THAT(measurement.notes, ElementsAre(HasSubstr("--extrapolated takes them")));
+  EXPECT_THAT(told(false), IsEmpty());
+  EXPECT_THAT(told(true), ElementsAre(HasSubstr("angles seem to be elevations")));
 }
 
 TEST(SampleSymptoms, TheSharedCasesAreTold) {

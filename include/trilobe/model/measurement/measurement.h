@@ -83,6 +83,8 @@ void LeaveOutOwnShadow(Measurement* measurement);
 // on tables and anisotropic measurements.
 void LeaveOutFill(Measurement* measurement);
 void LeaveOutZeroGaps(Measurement* measurement);
+// Leaves out scattered samples with a value that marks what was not measured, as 9999; adds a note.
+void LeaveOutMarks(Measurement* measurement);
 
 // Leaves out outliers (FindOutliers) and adds a note, if there are at least 10 (scattered samples:
 // and one in 500) and they change the reflected light by at least 2e-5; clean materials have a few
