@@ -20,6 +20,11 @@ if(TRILOBE_BUILD_APP)
   install(TARGETS trilobe_app)
   install(FILES ${PROJECT_SOURCE_DIR}/scripts/trilobe.bash
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME trilobe)
+  # The program writes its manual itself.
+  set(man_page ${PROJECT_BINARY_DIR}/trilobe.1)
+  install(CODE "execute_process(COMMAND \"$<TARGET_FILE:trilobe_app>\" help --man
+                                OUTPUT_FILE \"${man_page}\" COMMAND_ERROR_IS_FATAL ANY)")
+  install(FILES ${man_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 endif()
 
 configure_package_config_file(cmake/trilobe-config.cmake.in trilobe-config.cmake

@@ -94,26 +94,24 @@ std::string FlagHelp(const std::string& flag) {
 }
 
 std::string HelpText() {
-  std::string text =
-      "trilobe fits multi-lobe non-parametric microfacet models to measured BRDFs.\n\n"
-      "usage: trilobe COMMAND ARGUMENTS [--FLAG=VALUE ...]\n\n";
+  std::string text = "trilobe " + std::string(kPurpose) +
+                     ".\n\nusage: trilobe COMMAND ARGUMENTS [--FLAG=VALUE ...]\n\n";
   constexpr size_t kNames = 10;
   for (const Command& command : Commands()) {
     text += "  " + command.name + std::string(kNames - command.name.size(), ' ') + command.summary +
             "\n";
   }
-  text +=
-      "  help      this page, or `trilobe help COMMAND`\n\n"
-      "A SOURCE is a MERL .binary file, an RGL *_rgb.bsdf file, a UTIA .bin file or another of "
-      "docs/file-formats.md, or synth:NAME (`trilobe synth` lists the names). --quiet prints no "
-      "line "
-      "that says what goes on.\n";
+  text += "  help      this page, or `trilobe help COMMAND`\n\n" + std::string(kSourceHelp) + "\n";
   return Wrapped(text, OutputWidth());
 }
 
-std::string HelpText(const Command& command, bool all) {
-  std::string text = "usage: trilobe " + command.name + " " + command.arguments +
-                     " [--FLAG=VALUE ...]\n\n" + command.summary + "\n\n" + command.details + "\n";
+std::string UsageOf(const Command& command) {
+  return "trilobe " + command.name + (command.arguments.empty() ? "" : " " + command.arguments) +
+         " [--FLAG=VALUE ...]";
+}
+
+std::string CommandText(const Command& command, bool all) {
+  std::string text = command.summary + "\n\n" + command.details + "\n";
   if (command.particular_help != nullptr) text += "\n" + command.particular_help();
   if (all && !command.lists.empty()) text += "\n" + command.lists;
   const bool has_common = std::ranges::any_of(command.flags, IsCommon);
@@ -131,7 +129,11 @@ std::string HelpText(const Command& command, bool all) {
     text += "\nfurther flags, on which `trilobe help " + command.name + " --all` has more:\n" +
             others + "\n";
   }
-  return Wrapped(text, OutputWidth());
+  return text;
+}
+
+std::string HelpText(const Command& command, bool all) {
+  return Wrapped("usage: " + UsageOf(command) + "\n\n" + CommandText(command, all), OutputWidth());
 }
 
 }  // namespace trilobe

@@ -21,6 +21,7 @@
 #include "app/fit_flags.h"
 #include "app/flags.h"
 #include "app/help.h"
+#include "app/man_page.h"
 #include "app/solver_flags.h"
 #include "app/status.h"
 #include "core/base/names.h"
@@ -62,6 +63,7 @@ struct CommandLine {
   std::vector<Flag> flags;
   bool help = false;     // --help, -help or -h
   bool all = false;      // --all, of help
+  bool man = false;      // --man, of help
   bool version = false;  // --version
 };
 
@@ -123,6 +125,10 @@ CommandLine ReadCommandLine(int argc, const char* const* argv) {
     }
     if (word == "--all") {
       line.all = true;
+      continue;
+    }
+    if (word == "--man") {
+      line.man = true;
       continue;
     }
     if (word == "--version" || word == "-version") {
@@ -238,7 +244,7 @@ void TakeOtherNames(CommandLine* line) {
 
 int Help(const CommandLine& line) {
   if (line.words.empty()) {
-    std::cout << HelpText();
+    std::cout << (line.man ? ManPage() : HelpText());
     return 0;
   }
   const Command& command = FindCommand(line.words[0]);
@@ -296,6 +302,11 @@ int Main(int argc, char** argv) {
   if (line.version) {
     std::cout << "trilobe version " << TRILOBE_VERSION << "\n";
     return 0;
+  }
+  if (line.man && (!line.help || !line.words.empty())) {
+    throw Error(ErrorKind::kUnknown,
+                "--man is of the help of all commands; give `trilobe help --man`")
+        .About("flag", "man");
   }
   if (line.help) return Help(line);
   if (line.all) {

@@ -118,7 +118,7 @@ std::vector<Column> Told(std::span<const Column> columns,
 }
 
 // A number stays on its line.
-std::string Cell(const std::string& text) {
+std::string TableCell(const std::string& text) {
   constexpr size_t kShort = 12;
   return (LettersIn(text) <= kShort ? "<td class=\"short\">" : "<td>") + text + "</td>";
 }
@@ -132,7 +132,7 @@ std::string MethodsTable(std::span<const Column> all, std::span<const MethodSumm
   html += "</tr></thead><tbody>\n";
   for (const MethodSummary& of : summaries) {
     html += "<tr><th scope=\"row\">" + EscapedMarkup(Printable(of.method)) + "</th>";
-    for (const Column& column : columns) html += Cell(column.text(of));
+    for (const Column& column : columns) html += TableCell(column.text(of));
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
@@ -171,7 +171,7 @@ std::string HtmlOf(const std::vector<std::vector<std::string>>& rows) {
   html += "</tr></thead><tbody>\n";
   for (size_t k = 1; k < rows.size(); ++k) {
     html += "<tr><th scope=\"row\">" + EscapedMarkup(rows[k][0]) + "</th>";
-    for (size_t c = 1; c < rows[k].size(); ++c) html += Cell(rows[k][c]);
+    for (size_t c = 1; c < rows[k].size(); ++c) html += TableCell(rows[k][c]);
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
@@ -240,7 +240,7 @@ std::string RunsTable(const std::vector<StudyRun>& runs) {
          {Text(run.objective(), 5), ExcessText(run.excess()), Optional(run.optimality, 2),
           EndingWords(run.stop_reason), std::to_string(run.iterations()), Text(run.seconds, 3),
           Percent(run.held_out_E), Optional(run.mean_delta_e, 2), Optional(run.agreement(), 2)}) {
-      html += Cell(cell);
+      html += TableCell(cell);
     }
     html += "<td><a href=\"" + EncodeAddress(run.folder) + "/report.json\">report</a></td></tr>\n";
   }

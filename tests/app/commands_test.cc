@@ -91,6 +91,17 @@ TEST(HelpTest, HasTheRareFlagsWhereTheyAreAskedFor) {
   ExpectError(RunProgram({"fit", "synth:felt", "--all"}), "--all is for `trilobe help COMMAND`");
 }
 
+TEST(HelpTest, WritesTheManualOfAllCommands) {
+  const ProgramResult page = RunProgram({"help", "--man"});
+  EXPECT_EQ(page.status, 0);
+  EXPECT_THAT(page.out, StartsWith(".TH TRILOBE 1 "));
+  EXPECT_EQ(RunProgram({"--help", "--man"}).out, page.out);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--man"}, {"help", "fit", "--man"}, {"info", "x", "--man"}}) {
+    ExpectError(RunProgram(words), "give `trilobe help --man`");
+  }
+}
+
 TEST(HelpTest, ShowsTheFlagsOfTheSolverGiven) {
   const ProgramResult result = RunProgram({"fit", "--solver=awls_literal", "--help", "--all"});
   EXPECT_EQ(result.status, 0);
