@@ -79,22 +79,36 @@ class Run(Script):
             self.assertRegex(done.stdout, r"(?s)^usage: \./run .*fit, view, help\. `\./run help`")
         done = self.call("run", "--version")
         self.assertEqual((done.returncode, done.stdout), (0, "trilobe version 1.2.3\n"))
-        done = self.call("run", "fitt", "x")
-        self.assertEqual((done.returncode, done.stdout, done.stderr),
-                         (1, "", "trilobe: error: unknown command 'fitt'; known: fit, view, help\n"))
+        for arguments in ["fitt", "x"], ["fitt", "--help"], ["help", "fitt"]:
+            done = self.call("run", *arguments)
+            self.assertEqual((done.returncode, done.stdout, done.stderr),
+                             (1, "", "trilobe: error: unknown command 'fitt'; known: fit, view, help\n"))
 
     def test_builds_for_all_else(self):
-        for arguments in [], ["help"], ["fit", "x"], ["view", "--help"], ["--max_angle=75", "fit"]:
+        for arguments in [], ["help"], ["help", "fit"], ["fit", "x"], ["view", "--help"], ["--max_angle=75", "fit"]:
             self.assertEqual(self.call("run", *arguments).returncode, 7)
 
     def test_lets_a_program_answer_that_is_up_to_date(self):
-        program = self.write("build/release/bin/trilobe", "#!/bin/sh\necho program \"$@\"\nexit 5\n")
-        program.chmod(0o755)
-        for arguments in ["--help"], ["--version"], ["fitt", "x"]:
+        program = self.program()
+        for arguments in ["--help"], ["--version"], ["fitt", "x"], ["help"], ["help", "fitt"], ["fit", "--help"]:
             done = self.call("run", *arguments)
-            self.assertEqual((done.returncode, done.stdout), (5, f"program {' '.join(arguments)}\n"))
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (5, f"program {' '.join(arguments)}\n", ""))
         os.utime(self.root / "include/a.h", (program.stat().st_mtime + 1,) * 2)
         self.assertEqual(self.call("run", "--version").stdout, "trilobe version 1.2.3\n")
+
+    def test_asks_an_older_program_for_help_and_says_so(self):
+        os.utime(self.root / "include/a.h", (self.program().stat().st_mtime + 1,) * 2)
+        for arguments in ["help"], ["help", "fit"], ["help", "--man"], ["fit", "x", "--help"], ["fit", "-h"]:
+            done = self.call("run", *arguments)
+            self.assertEqual((done.returncode, done.stdout), (5, f"program {' '.join(arguments)}\n"))
+            self.assertRegex(done.stderr, r"^trilobe: help of a program that is older [^\n]+\n$")
+        for arguments in [], ["fit", "x"], ["fit", "x--help"]:
+            self.assertEqual(self.call("run", *arguments).returncode, 7)
+
+    def program(self):
+        path = self.write("build/release/bin/trilobe", "#!/bin/sh\necho program \"$@\"\nexit 5\n")
+        path.chmod(0o755)
+        return path
 
 
 if __name__ == "__main__":
