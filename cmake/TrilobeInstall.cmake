@@ -31,6 +31,11 @@ configure_package_config_file(cmake/trilobe-config.cmake.in trilobe-config.cmake
                               INSTALL_DESTINATION ${package_dir})
 # Below 1.0 a new minor version may change the interface.
 write_basic_package_version_file(trilobe-config-version.cmake COMPATIBILITY SameMinorVersion)
+# What is built is a package, too, which pip's builds take (TrilobeBuilt).
+export(EXPORT trilobe-evaluate NAMESPACE trilobe:: FILE ${PROJECT_BINARY_DIR}/trilobe-evaluate.cmake)
+if(TRILOBE_BUILD_LIBRARY)
+  export(EXPORT trilobe-library NAMESPACE trilobe:: FILE ${PROJECT_BINARY_DIR}/trilobe-library.cmake)
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT evaluate)
 install(FILES ${PROJECT_BINARY_DIR}/trilobe-config.cmake
               ${PROJECT_BINARY_DIR}/trilobe-config-version.cmake

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Python package by pip in fresh virtual environments, whole and only what evaluates, and runs README.md's
-# example in the former; says how long each takes. Needs PyPI, and the packages of the group run.
+# Installs the Python package by pip in fresh virtual environments, whole, only what evaluates, and whole with the
+# library of build/release if that is there, and runs README.md's example in the last; says how long each takes. Needs
+# PyPI, and the packages of the group run.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -16,8 +17,13 @@ install() {
   time "$folder/$name/bin/pip" install --quiet --disable-pip-version-check "$@"
 }
 
+# With flags of its own it takes nothing from the build of ./run, as where there is none.
+rm -rf build/pip
+CXXFLAGS=-g0 install anew .
+"$folder/anew/bin/python" -c 'import trilobe; trilobe.solvers()'
 install evaluates ./python/evaluate
 install all .
+[[ ! -e build/release/bin/trilobe ]] || cmp build/release/bin/trilobe "$folder/all/bin/trilobe"
 # Whoever names both folders means the same two packages; and what is installed goes by version, not by folder.
 "$folder/all/bin/pip" install --quiet --disable-pip-version-check --dry-run . ./python/evaluate
 "$folder/all/bin/pip" check

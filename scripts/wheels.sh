@@ -20,14 +20,14 @@ fi
 compiled_in=(libceres-dev libeigen3-dev nlohmann-json3-dev libxxhash-dev libstb-dev)
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL-$(nproc)}
 
-# wheel NAME SOURCE [PACKAGE...]: builds one, puts the shared libraries that it needs into it, and the licences of
+# wheel NAME SOURCE [PACKAGE...]: builds one, where the other is built, too, and what both have only once; puts the shared libraries that it needs into it, and the licences of
 # these and of the packages.
 wheel() {
   local name=$1 source=$2
   shift 2
   rm -f "$folder/$name"-*.whl
   slowly "wheel-$name" "$venv/bin/pip" wheel --verbose --no-deps --no-build-isolation \
-    --config-settings=build-dir="$folder/build/$name" --wheel-dir="$folder/build" "$source"
+    --config-settings=build-dir="$folder/build/cmake" --wheel-dir="$folder/build" "$source"
   quietly "wheel-$name-repair" "$venv/bin/auditwheel" repair --wheel-dir="$folder" "$folder/build/$name"-*.whl
   "$venv/bin/python" scripts/wheel_licences.py "$folder/$name"-*.whl "$@"
 }
