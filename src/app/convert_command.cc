@@ -68,7 +68,8 @@ ConvertOptions OptionsFromFlags(const std::string& source) {
                          .spectral = IsOn("spectral"),
                          .program = ProgramName(),
                          .appearance = AppearanceOptionsFromFlags(),
-                         .num_threads = ThreadsFromFlags()};
+                         .num_threads = ThreadsFromFlags(),
+                         .on_stage = Status::Stage};
   if (FLAGS_picture) {
     const std::string ending = EndingOf(FLAGS_out) == ".json" ? ".principled.json" : ".mtlx";
     options.picture = FLAGS_out.substr(0, FLAGS_out.size() - ending.size()) + ".png";

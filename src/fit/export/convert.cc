@@ -163,6 +163,7 @@ std::vector<std::string> WriteStandard(const ModelFile& file, const std::string&
   const bool materialx = EndingOf(path) == ".mtlx";
   const double max_angle = MaxAngleOf(file);
   Stopwatch stopwatch;
+  options.on_stage("finding the nearest OpenPBR");
   const NearestOpenPbr nearest =
       FindNearestOpenPbr(file.model, DegreesToRadians(max_angle), options.appearance);
   const SphereError& error = nearest.error;
@@ -194,14 +195,15 @@ std::vector<std::string> WriteStandard(const ModelFile& file, const std::string&
 
 // The model by whose help a measurement becomes a function of all directions. Further iterations
 // lower E by little, and the measured values of the file not at all.
-FitResult FitToHelp(const Measurement& measurement, int num_threads) {
+FitResult FitToHelp(const Measurement& measurement, const ConvertOptions& convert) {
   FitOptions options;
   options.compare = false;
   options.solver_options = [](const ModelSpec& /*spec*/) {
     return SolverOptions{.max_iterations = 4};
   };
   options.match_reflectance = false;
-  options.num_threads = num_threads;
+  options.num_threads = convert.num_threads;
+  options.on_stage = convert.on_stage;
   return Fit(measurement, options);
 }
 
@@ -236,6 +238,7 @@ std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::stri
             Text(static_cast<double>(shader.text.size()) / 1e6, 2) + " MB"};
   }
   const double max_angle = MaxAngleOf(file), max_theta = DegreesToRadians(max_angle);
+  options.on_stage("writing " + path);
   if (!IsTensorFile(path)) {
     return {
         WriteExported(ExportedModel(file.model, max_theta), "the model", max_angle, options, path)};
@@ -261,7 +264,7 @@ std::vector<std::string> WriteForRenderer(const Measurement& measurement, const 
   }
   RglExportOptions rgl = RglOptionsOf(options);
   Stopwatch stopwatch;
-  const FitResult fit = FitToHelp(measurement, options.num_threads);
+  const FitResult fit = FitToHelp(measurement, options);
   const std::string fitted =
       "fitted " + measurement.source + " by " + std::to_string(fit.stored_parameters) +
       " parameters, in " + Text(stopwatch.Lap(), 2) +
@@ -271,6 +274,7 @@ std::vector<std::string> WriteForRenderer(const Measurement& measurement, const 
     lines.insert(lines.begin(), fitted);
     return lines;
   }
+  options.on_stage("filling in what was not measured");
   const CompletedMeasurement completed = Complete(measurement, fit.model(), options.num_threads);
   const double measured = MaxAngleDegrees(measurement);
   const std::string than =
@@ -278,6 +282,7 @@ std::vector<std::string> WriteForRenderer(const Measurement& measurement, const 
           ? "the measurement"
           : "the measurement (whose samples stand at no grid: it is the fitted model)";
   std::vector<std::string> lines = {fitted + ", for where nothing was measured"};
+  options.on_stage("writing " + path);
   if (IsTensorFile(path)) {
     rgl.max_theta = DegreesToRadians(measured);
     lines.push_back(WriteTensorFile(ExportRgl(fit.model(), completed, rgl), than, measured,

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_FIT_EXPORT_CONVERT_H_
 #define TRILOBE_FIT_EXPORT_CONVERT_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct ConvertOptions {
   std::string picture = {};  // for standard materials: PNG of both side by side; empty: none
   AppearanceOptions appearance = {};  // of the spheres that judge standard materials
   int num_threads = 1;
+  // Called when a stage begins that may take seconds, with what it does.
+  std::function<void(const std::string&)> on_stage = [](const std::string&) {};
 };
 
 // Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .zemax.bsdf
