@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <iterator>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -292,25 +293,38 @@ namespace {
 constexpr std::array<std::string_view, 4> kPolarisations[] = {
     {"ss", "sp", "ps", "pp"}, {"hh", "hv", "vh", "vv"}, {"s", "p", "", ""}, {"te", "tm", "", ""}};
 
-// Marks "f_ss", "f_sp", "f_ps" and "f_pp", or "BRDF_s" and "BRDF_p", if nothing else is a value.
+// The name of a column but for case, punctuation and units of angles.
+std::string KeyOf(std::string_view name) {
+  std::string plain = Plain(name);
+  TakeBracket(&plain);
+  std::string key = LettersAndDigits(plain);
+  for (const std::string_view unit : kAngleUnits) TakeSuffix(unit, &key);
+  return key;
+}
+
+// Marks "f_ss", "f_sp", "f_ps" and "f_pp", or "BRDF_s" and "BRDF_p", beside angles, if nothing else
+// is a value.
 void MarkPolarised(std::vector<TableColumn>* columns) {
-  const auto is_value = [](const TableColumn& column) {
-    return column.role >= Role::kRed && column.role <= Role::kBand;
+  const auto has = [&](Role first, Role last) {
+    return std::ranges::any_of(*columns, [&](const TableColumn& column) {
+      return column.role >= first && column.role <= last;
+    });
   };
-  if (std::ranges::any_of(*columns, is_value)) return;
+  // Most lines that are tried for a header have no angle.
+  if (!has(Role::kThetaI, Role::kPhiO) || has(Role::kRed, Role::kBand)) return;
+  std::map<std::string, TableColumn*> others;
+  for (TableColumn& column : *columns) {
+    if (column.role == Role::kOther) others.emplace(KeyOf(column.name), &column);
+  }
+  std::vector<std::string> prefixes(std::begin(kValues), std::end(kValues));
+  prefixes.insert(prefixes.end(), {"r", ""});
   for (const auto& set : kPolarisations) {
-    std::vector<std::string_view> prefixes(std::begin(kValues), std::end(kValues));
-    prefixes.emplace_back("r");
-    if (set[0].size() > 1) prefixes.emplace_back("");
-    for (const std::string_view prefix : prefixes) {
+    for (const std::string& prefix : prefixes) {
+      if (prefix.empty() && set[0].size() == 1) continue;  // "s" and "p" may be anything
       std::vector<TableColumn*> found;
       for (const std::string_view polarisation : set) {
-        if (polarisation.empty()) continue;
-        const std::string name = std::string(prefix).append(polarisation);
-        const auto at = std::ranges::find_if(*columns, [&](const TableColumn& column) {
-          return column.role == Role::kOther && IsCalled(column.name, name);
-        });
-        if (at != columns->end()) found.push_back(&*at);
+        const auto at = others.find(prefix + std::string(polarisation));
+        if (!polarisation.empty() && at != others.end()) found.push_back(at->second);
       }
       if (found.size() != static_cast<size_t>(4 - std::ranges::count(set, ""))) continue;
       for (TableColumn* const column : found) {
@@ -347,11 +361,7 @@ std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
 }
 
 bool IsCalled(std::string_view name, std::string_view usual) {
-  std::string plain = Plain(name);
-  TakeBracket(&plain);
-  std::string key = LettersAndDigits(plain);
-  for (const std::string_view unit : kAngleUnits) TakeSuffix(unit, &key);
-  return key == LettersAndDigits(usual);
+  return KeyOf(name) == LettersAndDigits(usual);
 }
 
 std::optional<double> RadiansIn(std::string_view unit) {
