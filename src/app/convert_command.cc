@@ -40,9 +40,10 @@ DEFINE_double(error, 0,
 DEFINE_string(at, "",
               "for a model and a .csv file: a measurement, at whose directions the values of both "
               "are written, side by side");
-DEFINE_bool(picture, false,
-            "for a .mtlx or .principled.json file: draw the model and the file's material, side "
-            "by side, into a .png beside it");
+DEFINE_bool(
+    picture, false,
+    "for a .mtlx, .principled.json or .gltf file: draw the model and the file's material, side "
+    "by side, into a .png beside it");
 
 namespace trilobe {
 namespace {
@@ -71,7 +72,8 @@ ConvertOptions OptionsFromFlags(const std::string& source) {
                          .num_threads = ThreadsFromFlags(),
                          .on_stage = Status::Stage};
   if (FLAGS_picture) {
-    const std::string ending = EndingOf(FLAGS_out) == ".json" ? ".principled.json" : ".mtlx";
+    const std::string last = EndingOf(FLAGS_out);
+    const std::string ending = last == ".json" ? ".principled.json" : last;
     options.picture = FLAGS_out.substr(0, FLAGS_out.size() - ending.size()) + ".png";
     Inputs({source, FLAGS_probe}).CheckOutput(options.picture);
   }
@@ -91,9 +93,10 @@ void CheckRendererFlags(const std::string& path) {
   }
   for (const char* const flag : {"picture", "probe"}) {
     if (IsStandardMaterial(path) || IsDefault(flag)) continue;
-    throw Error(
-        ErrorKind::kConflict,
-        "--" + std::string(flag) + " goes with an --out that ends in .mtlx or .principled.json")
+    throw Error(ErrorKind::kConflict,
+                "--" + std::string(flag) +
+                    " goes with an --out that ends in .mtlx, .principled.json or "
+                    ".gltf")
         .About(flag);
   }
 }
@@ -300,7 +303,9 @@ Command ConvertCommand() {
           "model, to a FILE that ends in "
           ".glsl or .hlsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the "
           "nearest "
-          "OpenPBR of MaterialX, and in\n.principled.json that of Blender's Principled BSDF, with "
+          "OpenPBR of MaterialX, in\n.principled.json that of Blender's Principled BSDF, and in "
+          ".gltf "
+          "metallic, roughness and base colour for engines, on a sphere, with "
           "how near it is. A FILE with another ending is an error.\nWith "
           "--at=MEASUREMENT it writes a row per sample of that, with theta_i, phi_i, theta_o and "
           "phi_o [degrees] and the\nmeasured and the model's values [1/sr], to a FILE that ends in "

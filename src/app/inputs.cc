@@ -61,7 +61,7 @@ std::string RequiredMeasurementOut(const std::string& command) {
     throw error.WithMessage("--out=" + std::string(error.what()) +
                             (command == "convert"
                                  ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, "
-                                   ".mtlx or .principled.json for "
+                                   ".mtlx, .principled.json or .gltf for "
                                    "renderers and optical design"
                                  : ""));
   }

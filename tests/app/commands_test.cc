@@ -414,6 +414,13 @@ TEST(ConvertTest, WritesStandardMaterials) {
   EXPECT_THAT(blender.out, ContainsRegex("fitted synth:plastic.*\nwrote .*Principled BSDF"));
   const json principled = json::parse(Contents(folder / "x.principled.json"));
   EXPECT_LT(principled["inputs"]["Metallic"], 0.2);
+  const ProgramResult engine =
+      RunProgram({"convert", "synth:plastic@20x20x40", "--out=" + (folder / "x.gltf")});
+  EXPECT_EQ(engine.status, 0) << engine.err;
+  EXPECT_THAT(engine.out,
+              ContainsRegex("wrote .*metallic 0.*, roughness .*, base colour .*, PSNR"));
+  const json gltf = json::parse(Contents(folder / "x.gltf"));
+  EXPECT_EQ(gltf["materials"][0]["name"], "x");
 
   ExpectError(RunProgram({"convert", folder / "none.json", "--out=" + (folder / "y.mtlx")}),
               "cannot read '" + (folder / "none.json") + "'");
@@ -425,7 +432,7 @@ TEST(ConvertTest, WritesStandardMaterials) {
               "there is no folder '");
   ExpectError(
       RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.bsdf"), "--picture"}),
-      "--picture goes with an --out that ends in .mtlx or .principled.json");
+      "--picture goes with an --out that ends in .mtlx, .principled.json or .gltf");
   ExpectError(
       RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.mtlx"), "--error=0.1"}),
       "--error goes with an --out that ends in .bsdf");

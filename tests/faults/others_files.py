@@ -51,7 +51,8 @@ def writing_commands(harness):
         "compare": (["compare", harness.scene, *QUICK, cache], "out/trade_off.png"),
         "view": (["view", model, source], "out/page.html"),
     }
-    for ending in ("binary", "csv", "bsdf", "zemax.bsdf", "xml", "xompt", "glsl", "hlsl", "mtlx", "principled.json"):
+    for ending in ("binary", "csv", "bsdf", "zemax.bsdf", "xml", "xompt", "glsl", "hlsl", "mtlx", "principled.json",
+                   "gltf"):
         more = {"csv": ["--max_angle=30"], "mtlx": ["--picture"]}.get(ending, [])
         commands["convert." + ending] = (["convert", model, *more], "out/felt." + ending)
     for material, ending in (("felt", "binary"), ("linen", "bin"), ("felt@6x12", "csv")):

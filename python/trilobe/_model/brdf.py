@@ -19,7 +19,7 @@ from trilobe._model.table import Table
 
 CHANNELS = ("red", "green", "blue")
 _OTHER_FORMATS = (
-    ".binary", ".bin", ".csv", ".bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".glsl", ".hlsl",
+    ".binary", ".bin", ".csv", ".bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".gltf", ".glsl", ".hlsl",
 )
 _ALBEDO_ERROR = 0.03  # error of Brdf.albedo, up to 85 degrees
 _POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}

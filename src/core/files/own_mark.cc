@@ -50,6 +50,10 @@ bool IsOwnObject(const JsonValue& json, std::string_view bytes) {
   if (std::ranges::find(kFormats, format) != kFormats.end()) return true;
   if (format == "blender-principled") return Has(StringIn(json, "made"), "found by trilobe ");
   if (!format.empty()) return false;
+  if (const JsonValue* const asset = json.Find("asset"); asset != nullptr) {  // of glTF
+    return asset->type() == JsonValue::Type::kObject &&
+           Has(StringIn(*asset, "generator"), "found by trilobe ");
+  }
   const auto has = [&](std::string_view member) { return json.Find(member) != nullptr; };
   if (has("metadata")) return Has(bytes, kOwnMark);  // of OpenMATERIAL
   // Reports and plans by earlier versions.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <ostream>
 
@@ -10,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/files/file.h"
 #include "core/system/process.h"
+#include "fit/export/gltf_material.h"
 #include "fit/export/nearest_open_pbr.h"
 #include "fit/export/open_pbr.h"
 #include "io/formats/completed_measurement.h"
@@ -44,6 +46,7 @@ constexpr const char* kGlslEnding = ".glsl";
 constexpr const char* kHlslEnding = ".hlsl";
 constexpr const char* kMaterialXEnding = ".mtlx";
 constexpr const char* kPrincipledEnding = ".principled.json";
+constexpr const char* kGltfEnding = ".gltf";
 
 bool EndsIn(const std::string& path, const std::string& ending) {
   if (path.size() <= ending.size()) return false;
@@ -134,9 +137,19 @@ std::string WriteExported(const ExportedBrdf& brdf, const std::string& than, dou
   return write(file, "Zemax BSDF of " + angles, "XYZ");
 }
 
+using Shading = std::function<Rgb(const DirectionPair&)>;
+
+// ".mtlx", ".principled.json" or ".gltf".
+std::string EndingOfStandard(const std::string& path) {
+  for (const char* const ending : {kMaterialXEnding, kPrincipledEnding, kGltfEnding}) {
+    if (EndsIn(path, ending)) return ending;
+  }
+  return "";
+}
+
 // The two, side by side.
 void DrawStandard(const FactorModel& model, const std::string& source, double max_angle,
-                  const OpenPbrBrdf& brdf, const std::string& path, AppearanceOptions options) {
+                  const Shading& brdf, const std::string& path, AppearanceOptions options) {
   options.size = 160;  // half the pixels of each sphere
   Measurement shown = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
   LimitAngles(DegreesToRadians(max_angle), &shown);
@@ -160,34 +173,39 @@ std::string FittedTo(const ModelFile& file, const std::string& source) {
 // Writes the nearest material of renderers that have no other to a model.
 std::vector<std::string> WriteStandard(const ModelFile& file, const std::string& source,
                                        const std::string& path, const ConvertOptions& options) {
-  const bool materialx = EndingOf(path) == ".mtlx";
+  const bool materialx = EndsIn(path, kMaterialXEnding), gltf = EndsIn(path, kGltfEnding);
   const double max_angle = MaxAngleOf(file);
   Stopwatch stopwatch;
-  options.on_stage("finding the nearest OpenPBR");
+  options.on_stage(gltf ? "finding the nearest material of glTF" : "finding the nearest OpenPBR");
   const NearestOpenPbr nearest =
-      FindNearestOpenPbr(file.model, DegreesToRadians(max_angle), options.appearance);
+      FindNearestOpenPbr(file.model, DegreesToRadians(max_angle), options.appearance,
+                         gltf ? StandardShading::kGltf : StandardShading::kOpenPbr);
   const SphereError& error = nearest.error;
   const std::string name = std::filesystem::path(path).filename().string();
-  const MaterialNotes notes = {.name = name.substr(0, name.size() - (materialx ? 5 : 16)),
-                               .made = "the nearest OpenPBR to " + FileNameOf(source) +
-                                       FittedTo(file, source) + ", found by " + options.program,
-                               .error = "beside it on a sphere Delta E is " +
-                                        Text(error.mean_delta_e, 2) + " in the mean, below " +
-                                        Text(error.delta_e_95, 2) + " for 95 %, PSNR " +
-                                        Text(error.psnr_db, 3) + " dB",
-                               .lost = VerdictOf(error).visibility == Visibility::kNone
-                                           ? "lost against the model: nothing to be seen"
-                                           : "lost against the model, " + Words(VerdictOf(error))};
+  const MaterialNotes notes = {
+      .name = name.substr(0, name.size() - EndingOfStandard(path).size()),
+      .made = std::string("the nearest ") + (gltf ? "material of glTF" : "OpenPBR") + " to " +
+              FileNameOf(source) + FittedTo(file, source) + ", found by " + options.program,
+      .error = "beside it on a sphere Delta E is " + Text(error.mean_delta_e, 2) +
+               " in the mean, below " + Text(error.delta_e_95, 2) + " for 95 %, PSNR " +
+               Text(error.psnr_db, 3) + " dB",
+      .lost = VerdictOf(error).visibility == Visibility::kNone
+                  ? "lost against the model: nothing to be seen"
+                  : "lost against the model, " + Words(VerdictOf(error))};
   const std::string text = materialx ? FormatMaterialX(nearest.material, notes)
+                           : gltf    ? FormatGltf(nearest.material, notes)
                                      : FormatPrincipled(nearest.material, notes);
   WriteFile(path, [&](std::ostream& out) { out << text; });
-  std::vector<std::string> lines = {
-      "wrote " + path + ": " +
-      (materialx ? "open_pbr_surface" : "inputs of Blender's Principled BSDF") + ", " +
-      notes.error + "; " + notes.lost + " (" + Text(stopwatch.Lap(), 2) + " s)"};
+  std::vector<std::string> lines = {"wrote " + path + ": " +
+                                    (materialx ? "open_pbr_surface"
+                                     : gltf    ? EngineText(nearest.material)
+                                               : "inputs of Blender's Principled BSDF") +
+                                    ", " + notes.error + "; " + notes.lost + " (" +
+                                    Text(stopwatch.Lap(), 2) + " s)"};
   if (!options.picture.empty()) {
-    DrawStandard(file.model, source, max_angle, OpenPbrBrdf(nearest.material), options.picture,
-                 options.appearance);
+    const Shading brdf =
+        gltf ? Shading(GltfBrdf(nearest.material)) : Shading(OpenPbrBrdf(nearest.material));
+    DrawStandard(file.model, source, max_angle, brdf, options.picture, options.appearance);
     lines.push_back("wrote " + options.picture + ": the model, and what the file has");
   }
   return lines;
@@ -221,9 +239,7 @@ bool IsTensorFile(const std::string& path) {
 
 bool TakesError(const std::string& path) { return EndingOf(path) == kTensorEnding; }
 
-bool IsStandardMaterial(const std::string& path) {
-  return EndsIn(path, kMaterialXEnding) || EndsIn(path, kPrincipledEnding);
-}
+bool IsStandardMaterial(const std::string& path) { return !EndingOfStandard(path).empty(); }
 
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options) {

@@ -3,12 +3,17 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
+#include <functional>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "fit/export/gltf_material.h"
 #include "model/appearance/color.h"
+#include "model/appearance/verdict.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
@@ -24,30 +29,33 @@ namespace {
 struct Bound {
   double least, most;
 };
-// In the order of Pack; the last one is left out of isotropic materials.
+// In the order of Pack.
 constexpr Bound kBounds[] = {{0, 1}, {0, 1},    {0, 1},      {0, 1}, {0, 1},    {0, 1},   {0, 1},
                              {0, 1}, {0.03, 1}, {1.05, 2.5}, {0, 1}, {0.03, 1}, {0, 0.95}};
 constexpr int kMost = std::size(kBounds);
 
-std::vector<double> Pack(const OpenPbr& m, bool anisotropic) {
-  std::vector<double> x = {m.base_color[0],
-                           m.base_color[1],
-                           m.base_color[2],
-                           m.base_diffuse_roughness,
-                           m.base_metalness,
-                           m.specular_color[0],
-                           m.specular_color[1],
-                           m.specular_color[2],
-                           m.specular_roughness,
-                           m.specular_ior,
-                           m.coat_weight,
-                           m.coat_roughness,
-                           m.specular_roughness_anisotropy};
-  x.resize(anisotropic ? kMost : kMost - 1);
-  return x;
+// Numbers of parameters that are free; the others keep what they start from.
+using Free = std::vector<int>;
+
+std::array<double, kMost> Pack(const OpenPbr& m) {
+  return {m.base_color[0],
+          m.base_color[1],
+          m.base_color[2],
+          m.base_diffuse_roughness,
+          m.base_metalness,
+          m.specular_color[0],
+          m.specular_color[1],
+          m.specular_color[2],
+          m.specular_roughness,
+          m.specular_ior,
+          m.coat_weight,
+          m.coat_roughness,
+          m.specular_roughness_anisotropy};
 }
 
-OpenPbr Unpack(const double* x, const OpenPbr& start, bool anisotropic) {
+OpenPbr Unpack(const double* of_free, const Free& free, const OpenPbr& start) {
+  std::array<double, kMost> x = Pack(start);
+  for (size_t k = 0; k < free.size(); ++k) x[free[k]] = of_free[k];
   OpenPbr m = start;
   m.base_color = {x[0], x[1], x[2]};
   m.base_diffuse_roughness = x[3];
@@ -57,8 +65,73 @@ OpenPbr Unpack(const double* x, const OpenPbr& start, bool anisotropic) {
   m.specular_ior = x[9];
   m.coat_weight = x[10];
   m.coat_roughness = x[11];
-  if (anisotropic) m.specular_roughness_anisotropy = x[12];
+  m.specular_roughness_anisotropy = x[12];
   return m;
+}
+
+// --- Closures ------------------------------------------------------------------------------------
+
+// A material of fewer closures: these parameters, and others that say that something is not there.
+struct Closures {
+  Free free;
+  void (*pin)(OpenPbr* material);
+  bool is_metal = false;
+};
+
+constexpr int kDiffuseRoughness = 3, kAnisotropy = 12;
+
+// glTF's diffuse term is Lambert's.
+Free WhatThereIs(bool anisotropic, StandardShading shading) {
+  Free all(kMost);
+  std::iota(all.begin(), all.end(), 0);
+  if (!anisotropic) std::erase(all, kAnisotropy);
+  if (shading == StandardShading::kGltf) std::erase(all, kDiffuseRoughness);
+  return all;
+}
+
+void WithoutCoat(OpenPbr* m) { m->coat_weight = m->coat_roughness = 0; }
+void WithoutTint(OpenPbr* m) {
+  WithoutCoat(m);
+  m->specular_color = {1, 1, 1};
+  m->base_diffuse_roughness = 0;
+}
+
+// The fewest first. An engine has roughness, base colour and metalness alone; its metal is one GGX
+// lobe whose F0 is the base colour.
+std::vector<Closures> SimplerClosures(const Free& all) {
+  std::vector<Closures> simpler = {{{0, 1, 2, 8},
+                                    [](OpenPbr* m) {
+                                      WithoutTint(m);
+                                      m->base_metalness = 1;
+                                    },
+                                    /*is_metal=*/true},
+                                   {{0, 1, 2, 8, 9},
+                                    [](OpenPbr* m) {
+                                      WithoutTint(m);
+                                      m->base_metalness = 0;
+                                    }},
+                                   {{0, 1, 2, 4, 8, 9}, WithoutTint},
+                                   {{0, 1, 2, 4, 5, 6, 7, 8, 9},
+                                    [](OpenPbr* m) {
+                                      WithoutCoat(m);
+                                      m->base_diffuse_roughness = 0;
+                                    }},
+                                   {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, WithoutCoat}};
+  const auto has = [&](int k) { return std::ranges::find(all, k) != all.end(); };
+  for (Closures& one : simpler) {
+    if (has(kAnisotropy)) one.free.push_back(kAnisotropy);
+    std::erase_if(one.free, [&](int k) { return !has(k); });
+  }
+  return simpler;
+}
+
+// --- Shading -------------------------------------------------------------------------------------
+
+using Shaded = std::function<Rgb(const DirectionPair&)>;
+
+Shaded ShadedBy(StandardShading shading, const OpenPbr& material) {
+  if (shading == StandardShading::kGltf) return GltfBrdf(material);
+  return OpenPbrBrdf(material);
 }
 
 // --- Comparison ----------------------------------------------------------------------------------
@@ -73,6 +146,7 @@ struct Sums {
   std::vector<int> ends;    // of each sum
   bool lab = false;         // compared by CIELAB, or else by the cube root
   double exposure = 1;
+  StandardShading shading = StandardShading::kOpenPbr;
   std::vector<Rgb> expected;  // of the model
 
   int size() const { return static_cast<int>(ends.size()); }
@@ -108,10 +182,10 @@ struct Sums {
 
 class SumsCost : public ceres::CostFunction {
  public:
-  SumsCost(const Sums& sums, const OpenPbr& start, bool anisotropic, int num_threads)
-      : sums_(sums), start_(start), anisotropic_(anisotropic), num_threads_(num_threads) {
+  SumsCost(const Sums& sums, const OpenPbr& start, const Free& free, int num_threads)
+      : sums_(sums), start_(start), free_(free), num_threads_(num_threads) {
     set_num_residuals(kChannels * sums.size());
-    mutable_parameter_block_sizes()->push_back(anisotropic ? kMost : kMost - 1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(free.size()));
   }
 
   bool Evaluate(const double* const* parameters, double* residuals,
@@ -125,11 +199,12 @@ class SumsCost : public ceres::CostFunction {
       if (k > 0) {
         // Differences towards the middle of the bounds.
         constexpr double kStep = 1e-5;
-        const double middle = (kBounds[k - 1].least + kBounds[k - 1].most) / 2;
+        const Bound& bound = kBounds[free_[k - 1]];
+        const double middle = (bound.least + bound.most) / 2;
         steps[k - 1] = x[k - 1] > middle ? -kStep : kStep;
         x[k - 1] += steps[k - 1];
       }
-      seen[k] = sums_.Evaluate(OpenPbrBrdf(Unpack(x.data(), start_, anisotropic_)));
+      seen[k] = sums_.Evaluate(ShadedBy(sums_.shading, Unpack(x.data(), free_, start_)));
     });
     for (int j = 0; j < sums_.size(); ++j) {
       for (int c = 0; c < kChannels; ++c) {
@@ -146,20 +221,21 @@ class SumsCost : public ceres::CostFunction {
  private:
   const Sums& sums_;
   const OpenPbr start_;
-  const bool anisotropic_;
+  const Free free_;
   const int num_threads_;
 };
 
-OpenPbr Moved(const Sums& sums, const OpenPbr& start, bool anisotropic, int iterations,
+OpenPbr Moved(const Sums& sums, const OpenPbr& start, const Free& free, int iterations,
               int num_threads) {
-  std::vector<double> x = Pack(start, anisotropic);
+  const std::array<double, kMost> all = Pack(start);
+  std::vector<double> x;
+  for (const int k : free) x.push_back(std::clamp(all[k], kBounds[k].least, kBounds[k].most));
   ceres::Problem problem;
-  problem.AddResidualBlock(new SumsCost(sums, start, anisotropic, num_threads),
+  problem.AddResidualBlock(new SumsCost(sums, start, free, num_threads),
                            new ceres::HuberLoss(sums.lab ? 10 : 0.5), x.data());
   for (size_t k = 0; k < x.size(); ++k) {
-    x[k] = std::clamp(x[k], kBounds[k].least, kBounds[k].most);
-    problem.SetParameterLowerBound(x.data(), static_cast<int>(k), kBounds[k].least);
-    problem.SetParameterUpperBound(x.data(), static_cast<int>(k), kBounds[k].most);
+    problem.SetParameterLowerBound(x.data(), static_cast<int>(k), kBounds[free[k]].least);
+    problem.SetParameterUpperBound(x.data(), static_cast<int>(k), kBounds[free[k]].most);
   }
   ceres::Solver::Options options;
   options.max_num_iterations = iterations;
@@ -168,7 +244,7 @@ OpenPbr Moved(const Sums& sums, const OpenPbr& start, bool anisotropic, int iter
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  return Unpack(x.data(), start, anisotropic);
+  return Unpack(x.data(), free, start);
 }
 
 // --- The model -----------------------------------------------------------------------------------
@@ -265,7 +341,7 @@ Sums OverSphere(const Prepared& model, double max_theta, const AppearanceOptions
 }
 
 // Albedo at the normal of the diffuse term, and the mean color of all.
-std::vector<OpenPbr> Starts(const Prepared& model) {
+std::vector<OpenPbr> Starts(const Prepared& model, StandardShading shading) {
   Rgb diffuse = model.diffuse();
   for (double& x : diffuse) x = std::clamp(x * kPi, 0.02, 0.95);
   const Direction up = {0, 0, 1};
@@ -290,7 +366,8 @@ std::vector<OpenPbr> Starts(const Prepared& model) {
   if (!model.anisotropic()) return starts;
   std::vector<OpenPbr> turned;
   for (OpenPbr start : starts) {
-    start.specular_roughness_anisotropy = 0.3;
+    // glTF's strength counts by its square.
+    start.specular_roughness_anisotropy = shading == StandardShading::kGltf ? 0.6 : 0.3;
     for (const double turn : {0.0, kPi / 2}) {
       start.turn = turn;
       turned.push_back(start);
@@ -302,45 +379,75 @@ std::vector<OpenPbr> Starts(const Prepared& model) {
 }  // namespace
 
 NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
-                                  const AppearanceOptions& options) {
+                                  const AppearanceOptions& options, StandardShading shading) {
   const Prepared prepared(model);
   const auto value = [&](const DirectionPair& pair) { return prepared.Value(pair.wi, pair.wo); };
   Sums half_vectors = OverHalfVectors(prepared, max_theta);
   half_vectors.expected = half_vectors.Evaluate(value);
   Sums sphere = OverSphere(prepared, max_theta, options);
   sphere.expected = sphere.Evaluate(value);
+  half_vectors.shading = sphere.shading = shading;
 
   const double least = std::cos(max_theta) - 1e-12;
   const auto counts = [&](const SphericalAngles& at) {
     return std::cos(at.theta_i) >= least && std::cos(at.theta_o) >= least;
   };
   const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
-  const bool anisotropic = prepared.anisotropic();
-  std::vector<std::pair<double, OpenPbr>> near;
-  for (const OpenPbr& start : Starts(prepared)) {
-    OpenPbr material = Moved(half_vectors, start, anisotropic, 12, options.num_threads);
-    material = Moved(sphere, material, anisotropic, 8, options.num_threads);
-    double distance = 0;
-    const std::vector<Rgb> seen = sphere.Evaluate(OpenPbrBrdf(material));
-    for (int j = 0; j < sphere.size(); ++j) distance += LabDifference(seen[j], sphere.expected[j]);
-    near.emplace_back(distance, material);
-  }
-  std::ranges::stable_sort(near, {}, &std::pair<double, OpenPbr>::first);
-  constexpr size_t kRefined = 2;
-  near.resize(std::min(near.size(), kRefined));
-  NearestOpenPbr nearest;
-  bool any = false;
-  for (const auto& start : near) {
-    const OpenPbr material = Moved(sphere, start.second, anisotropic, 40, options.num_threads);
-    const OpenPbrBrdf brdf(material);
+  const auto distance = [&](const OpenPbr& material) {
+    double sum = 0;
+    const std::vector<Rgb> seen = sphere.Evaluate(ShadedBy(shading, material));
+    for (int j = 0; j < sphere.size(); ++j) sum += LabDifference(seen[j], sphere.expected[j]);
+    return sum;
+  };
+  const auto rendered = [&](const OpenPbr& material) {
+    const Shaded brdf = ShadedBy(shading, material);
     const SphericalBrdf materials[] = {
         [&](const SphericalAngles& at) { return value(ToDirections(at)); },
         [&](const SphericalAngles& at) { return brdf(ToDirections(at)); }};
     const RenderedImages images =
         Render(ViewSphere(options.size, 4), materials, lights, counts, false, options.num_threads);
-    const SphereError error = CompareSpheres(images.counted[0], images.counted[1]);
-    if (!any || error.mean_delta_e < nearest.error.mean_delta_e) nearest = {material, error};
-    any = true;
+    return NearestOpenPbr{material, CompareSpheres(images.counted[0], images.counted[1])};
+  };
+  // The best two of all starts, with these parameters free.
+  const auto nearest_of = [&](const std::vector<OpenPbr>& starts, const Free& free) {
+    std::vector<std::pair<double, OpenPbr>> near;
+    for (const OpenPbr& start : starts) {
+      OpenPbr material = Moved(half_vectors, start, free, 12, options.num_threads);
+      material = Moved(sphere, material, free, 8, options.num_threads);
+      near.emplace_back(distance(material), material);
+    }
+    std::ranges::stable_sort(near, {}, &std::pair<double, OpenPbr>::first);
+    constexpr size_t kRefined = 2;
+    near.resize(std::min(near.size(), kRefined));
+    std::optional<NearestOpenPbr> nearest;
+    for (const auto& start : near) {
+      const NearestOpenPbr found =
+          rendered(Moved(sphere, start.second, free, 40, options.num_threads));
+      if (!nearest || found.error.mean_delta_e < nearest->error.mean_delta_e) nearest = found;
+    }
+    return *nearest;
+  };
+  const std::vector<OpenPbr> starts = Starts(prepared, shading);
+  const Free all = WhatThereIs(prepared.anisotropic(), shading);
+  const NearestOpenPbr nearest = nearest_of(starts, all);
+  // What is not seen to be there is left out.
+  constexpr double kNotSeen = 0.5;  // [dB]
+  const auto is_alike = [&](const SphereError& error) {
+    return error.psnr_db >= nearest.error.psnr_db - kNotSeen ||
+           VerdictOf(error).visibility == Visibility::kNone;
+  };
+  std::optional<NearestOpenPbr> metal;  // or a dielectric, whichever is nearer
+  for (const Closures& closures : SimplerClosures(all)) {
+    std::vector<OpenPbr> simple = starts;
+    simple.push_back(nearest.material);
+    for (OpenPbr& start : simple) closures.pin(&start);
+    NearestOpenPbr found = nearest_of(simple, closures.free);
+    if (closures.is_metal) {
+      metal = found;
+      continue;
+    }
+    if (metal && metal->error.psnr_db > found.error.psnr_db) found = *metal;
+    if (is_alike(found.error)) return found;
   }
   return nearest;
 }

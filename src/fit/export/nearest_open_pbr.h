@@ -7,6 +7,10 @@
 
 namespace trilobe {
 
+// Who shades a standard material: MaterialX and Blender, or glTF's renderers (GltfBrdf), which have
+// no rough diffuse term and lose light that is scattered more than once.
+enum class StandardShading { kOpenPbr, kGltf };
+
 // The standard material that looks most like a model.
 struct NearestOpenPbr {
   OpenPbr material;
@@ -15,11 +19,14 @@ struct NearestOpenPbr {
 
 // Finds it by Ceres' trust region under bounds from several starts (metal and dielectric, smooth
 // and rough). Each start first fits the cube root of rho cos theta_i over half vectors, then a
-// small sphere by CIELAB difference. The best one by the sphere that judges fits is returned.
-// Directions beyond `max_theta` [rad], which were not measured, do not count. Throws Error for a
-// model that reflects nothing.
+// small sphere by CIELAB difference. The best one by the sphere that judges fits has all closures;
+// returned is the one with the fewest (a metal, a dielectric, both, a tint, a rough diffuse term, a
+// coat) that is no more than 0.5 dB behind it, or cannot be told from the model. Directions beyond
+// `max_theta` [rad], which were not measured, do not count. Throws Error for a model that reflects
+// nothing.
 NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
-                                  const AppearanceOptions& options);
+                                  const AppearanceOptions& options,
+                                  StandardShading shading = StandardShading::kOpenPbr);
 
 }  // namespace trilobe
 

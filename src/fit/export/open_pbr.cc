@@ -66,8 +66,6 @@ std::string ColorText(const Rgb& rgb) {
   return Text(rgb[0]) + ", " + Text(rgb[1]) + ", " + Text(rgb[2]);
 }
 
-double Rounded(double x) { return std::round(x * 1e4) / 1e4; }
-
 // Within an attribute. XML has no other control characters, not even escaped.
 std::string Escaped(std::string text) {
   std::ranges::replace_if(

@@ -2,6 +2,7 @@
 #define TRILOBE_FIT_EXPORT_OPEN_PBR_H_
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -58,12 +59,15 @@ class OpenPbrBrdf {
   double cos_turn_ = 1, sin_turn_ = 0;
 };
 
+// A parameter with the digits that files have.
+inline double Rounded(double x) { return std::round(x * 1e4) / 1e4; }
+
 // Texts for readers of a file.
 struct MaterialNotes {
-  std::string name;   // of the material; characters other than letters and digits become _
-  std::string made;   // its source and program
-  std::string error;  // its visible error
-  std::string lost;   // what it lacks of the model
+  std::string name = {};   // of the material; characters other than letters and digits become _
+  std::string made = {};   // its source and program
+  std::string error = {};  // its visible error
+  std::string lost = {};   // what it lacks of the model
 };
 
 // A MaterialX 1.39 document with an open_pbr_surface.

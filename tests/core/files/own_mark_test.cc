@@ -27,13 +27,15 @@ TEST(SaysOwn, JsonByItsFormat) {
        {R"({"format": "trilobe-model"})", R"({"a": 1, "format": "trilobe-plan"})",
         R"({"run": "0", "files": [], "key": ""})",
         R"({"run": "0", "files": [], "unfinished": true})",
-        R"({"format": "blender-principled", "made": "..., found by trilobe 0.2.0"})"}) {
+        R"({"format": "blender-principled", "made": "..., found by trilobe 0.2.0"})",
+        R"({"asset": {"version": "2.0", "generator": "..., found by trilobe 0.2.0"}})"}) {
     EXPECT_TRUE(SaysOwn(json)) << json;
   }
   // Files that a user writes for the program are the user's.
   for (const char* const json : {"{}", R"({"tool": "other"})", R"({"format": "trilobe-scene"})",
                                  R"({"format": "trilobe-model")", R"({"run": 1, "files": []})",
                                  R"({"format": "blender-principled", "made": "by hand"})",
+                                 R"({"asset": {"version": "2.0", "generator": "by hand"}})",
                                  R"({"note": "written by Trilobe"})"}) {
     EXPECT_FALSE(SaysOwn(json)) << json;
   }

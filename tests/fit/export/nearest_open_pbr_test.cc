@@ -33,10 +33,18 @@ TEST(FindNearestOpenPbr, FindsTheRoughnessOfAHighlight) {
   const NearestOpenPbr nearest = FindNearestOpenPbr(model, kPi / 2, kSmall);
   EXPECT_LT(nearest.error.mean_delta_e, 2);
   EXPECT_TRUE(std::isfinite(nearest.error.psnr_db));
-  const bool by_coat =
-      nearest.material.coat_weight > 0.5 && std::abs(nearest.material.coat_roughness - 0.5) < 0.1;
-  EXPECT_TRUE(by_coat || std::abs(nearest.material.specular_roughness - 0.5) < 0.1)
-      << nearest.material.specular_roughness << " " << nearest.material.coat_roughness;
+  EXPECT_NEAR(nearest.material.specular_roughness, 0.5, 0.05);
+}
+
+// What one GGX lobe does is one closure of an engine's material.
+TEST(FindNearestOpenPbr, TakesTheFewestClosures) {
+  const FactorModel model = AnalyticModel(ModelSpec::SharedFactors(1), 0.15, 0);
+  for (const StandardShading shading : {StandardShading::kOpenPbr, StandardShading::kGltf}) {
+    const OpenPbr found = FindNearestOpenPbr(model, kPi / 2, kSmall, shading).material;
+    EXPECT_NEAR(found.specular_roughness, std::sqrt(0.15), 0.02);
+    EXPECT_EQ(found.coat_weight, 0);
+    EXPECT_EQ(found.base_diffuse_roughness, 0);
+  }
 }
 
 TEST(FindNearestOpenPbr, TakesAnisotropicModels) {
