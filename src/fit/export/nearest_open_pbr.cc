@@ -408,8 +408,9 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
         Render(ViewSphere(options.size, 4), materials, lights, counts, false, options.num_threads);
     return NearestOpenPbr{material, CompareSpheres(images.counted[0], images.counted[1])};
   };
-  // The best two of all starts, with these parameters free.
-  const auto nearest_of = [&](const std::vector<OpenPbr>& starts, const Free& free) {
+  // The best of what so many of all starts lead to, with these parameters free.
+  const auto nearest_of = [&](const std::vector<OpenPbr>& starts, const Free& free,
+                              size_t refined) {
     std::vector<std::pair<double, OpenPbr>> near;
     for (const OpenPbr& start : starts) {
       OpenPbr material = Moved(half_vectors, start, free, 12, options.num_threads);
@@ -417,8 +418,7 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
       near.emplace_back(distance(material), material);
     }
     std::ranges::stable_sort(near, {}, &std::pair<double, OpenPbr>::first);
-    constexpr size_t kRefined = 2;
-    near.resize(std::min(near.size(), kRefined));
+    near.resize(std::min(near.size(), refined));
     std::optional<NearestOpenPbr> nearest;
     for (const auto& start : near) {
       const NearestOpenPbr found =
@@ -429,7 +429,7 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
   };
   const std::vector<OpenPbr> starts = Starts(prepared, shading);
   const Free all = WhatThereIs(prepared.anisotropic(), shading);
-  const NearestOpenPbr nearest = nearest_of(starts, all);
+  const NearestOpenPbr nearest = nearest_of(starts, all, 2);
   // What is not seen to be there is left out.
   constexpr double kNotSeen = 0.5;  // [dB]
   const auto is_alike = [&](const SphereError& error) {
@@ -438,10 +438,14 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
   };
   std::optional<NearestOpenPbr> metal;  // or a dielectric, whichever is nearer
   for (const Closures& closures : SimplerClosures(all)) {
+    // From what has all closures, and the nearest of the starts without these.
     std::vector<OpenPbr> simple = starts;
-    simple.push_back(nearest.material);
     for (OpenPbr& start : simple) closures.pin(&start);
-    NearestOpenPbr found = nearest_of(simple, closures.free);
+    std::ranges::stable_sort(simple, {}, distance);
+    simple.resize(1);
+    simple.push_back(nearest.material);
+    closures.pin(&simple.back());
+    NearestOpenPbr found = nearest_of(simple, closures.free, 1);
     if (closures.is_metal) {
       metal = found;
       continue;
