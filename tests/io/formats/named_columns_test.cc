@@ -39,6 +39,27 @@ TEST(NamedColumns, AHeaderTellsWhichTheyAre) {
   }
 }
 
+TEST(NamedColumns, TheOthersKeepTheMeaningOfTheirNames) {
+  const Measurement read =
+      Read("aoi,theta_o (rad),Az,x,g\n30,0.5,90,0.25,0.5\n", {.columns = "f=x"});
+  ASSERT_EQ(read.samples.rho, (std::vector<Rgb>{{0.25, 0.25, 0.25}}));
+  EXPECT_EQ(read.samples.directions[0].theta_o, 0.5);
+  EXPECT_NEAR(RadiansToDegrees(read.samples.directions[0].phi_o), 90, 1e-12);
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("left out: 'g'")));
+  // A column that is named takes the place of another.
+  EXPECT_EQ(Read("theta_i,theta_o,theta_2,BRDF\n30,10,20,1\n", {.columns = "theta_o=theta_2"})
+                .samples.directions[0]
+                .theta_o,
+            DegreesToRadians(20));
+  EXPECT_EQ(Read("theta_i,theta_o,raw,BRDF\n30,10,20,1\n", {.columns = "f=raw"}).samples.rho[0][0],
+            20);
+  // What the header calls R is asked, unless the flag names it.
+  const std::string of_r = "theta_i,out,R\n30,10,1\n";
+  EXPECT_THAT(ReadError(of_r, {.columns = "theta_o=out"}),
+              IsError(ErrorKind::kMissing, {.key = "scale", .value = "R"}));
+  EXPECT_EQ(Read(of_r, {.columns = "theta_o=out,f=R"}).samples.size(), 1);
+}
+
 TEST(NamedColumns, UnitsOfTheHeaderCount) {
   const Measurement read = Read("In (rad);Out_rad;Value [dB]\n0.5;0.25;10\n",
                                 {.columns = "theta_i=In,theta_o=Out_rad,f=Value"});

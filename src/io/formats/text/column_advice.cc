@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "io/formats/text/angle_names.h"
 #include "trilobe/core/base/angles.h"
 
 namespace trilobe {
@@ -90,6 +91,14 @@ const Sensor kSensors[] = {{"MODIS",
                              {"b11", 1610},
                              {"b12", 2190}},
                             {665, 560, 490}}};
+
+// A flag as a shell takes it.
+std::string Quotable(const std::string& flag) {
+  const bool is_plain = flag.find_first_of(" \t'\"()[]|&;*$<>#`\\") == std::string::npos;
+  return is_plain                               ? flag
+         : flag.find('\'') == std::string::npos ? "'" + flag + "'"
+                                                : "\"" + flag + "\"";
+}
 
 std::string KeyOf(const TableColumn& column) {
   std::string key;
@@ -239,6 +248,23 @@ std::string AdviceOnCoordinates(const std::vector<TableColumn>& columns) {
   return {};
 }
 
+// An azimuth that is left out makes another measurement of a table.
+std::string AdviceOnAzimuths(const std::vector<TableColumn>& columns) {
+  const bool has_azimuth = std::ranges::any_of(columns, [](const TableColumn& column) {
+    return column.role == ColumnRole::kPhiI || column.role == ColumnRole::kPhiO ||
+           column.role == ColumnRole::kPhi || column.role == ColumnRole::kPhase;
+  });
+  if (has_azimuth) return {};
+  const auto asked = std::ranges::find_if(columns, [](const TableColumn& column) {
+    return column.role == ColumnRole::kOther && !column.is_by_flag && HasAzimuthWord(column.name);
+  });
+  if (asked == columns.end()) return {};
+  return "column '" + asked->name + "' has the name of an azimuth, and not of which; type " +
+         Quotable("--columns=phi_o=" + asked->name) +
+         " if it is the detector's, or the difference to the light's, and " +
+         Quotable("--columns=-=" + asked->name) + " if it is another";
+}
+
 std::string AdviceOnAngles(const std::vector<TableColumn>& columns) {
   for (const std::string_view vector : {"wix", "ix", "lx", "inx", "lightx", "xi"}) {
     if (!Has(columns, vector)) continue;
@@ -280,17 +306,33 @@ std::string AdviceOnAngles(const std::vector<TableColumn>& columns) {
 
 std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,
                         std::string_view value) {
+  std::vector<ColumnRole> named;
+  // The first column of a role, by the name that --columns has for it.
+  const auto name_of = [&](const TableColumn& column) -> std::string {
+    ColumnRole role = column.role;
+    if (role == ColumnRole::kTheta) role = ColumnRole::kThetaO;
+    if (role == ColumnRole::kPhi) role = ColumnRole::kPhiO;
+    const bool is_known = role == ColumnRole::kWavelength || role == ColumnRole::kFromMirror ||
+                          role == ColumnRole::kPhase || role <= ColumnRole::kPhiO;
+    const bool is_other = role != column.role && std::ranges::any_of(columns, [&](const auto& of) {
+                            return of.role == role;  // "phi" beside "phi_o"
+                          });
+    if (!is_known || is_other || std::ranges::find(named, role) != named.end()) return "-";
+    named.push_back(role);
+    const std::string unit = column.unit.starts_with("rad") || column.unit.starts_with("g") ||
+                                     column.unit == "um" || column.unit == "m"
+                                 ? "_" + column.unit
+                                 : "";
+    if (role == ColumnRole::kWavelength) return "wavelength" + unit;
+    if (role == ColumnRole::kFromMirror) return "from_mirror" + unit;
+    if (role == ColumnRole::kPhase) return "phase" + unit;
+    if (!column.from_horizon) return kUsualNames[static_cast<int>(role)] + unit;
+    return (role == ColumnRole::kThetaI ? "elevation_i" : "elevation_o") + unit;
+  };
   std::string text = "--columns=";
   for (size_t k = 0; k < columns.size(); ++k) {
-    const ColumnRole role = columns[k].role;
     text += k > 0 ? "," : "";
-    text += k == as_f                                                   ? value
-            : role == ColumnRole::kThetaI                               ? "theta_i"
-            : role == ColumnRole::kPhiI                                 ? "phi_i"
-            : role == ColumnRole::kThetaO || role == ColumnRole::kTheta ? "theta_o"
-            : role == ColumnRole::kPhiO || role == ColumnRole::kPhi     ? "phi_o"
-            : role == ColumnRole::kPhase                                ? "phase"
-                                                                        : "-";
+    text += k == as_f ? std::string(value) : name_of(columns[k]);
   }
   return text;
 }
@@ -316,7 +358,11 @@ std::string AdviceOn(const std::vector<TableColumn>& columns, const GivenAngles&
                              return role == ColumnRole::kThetaO || role == ColumnRole::kTheta;
                            });
   const bool from_mirror = has([](ColumnRole role) { return role == ColumnRole::kFromMirror; });
-  if (!has_theta_i || !(has_theta_o || from_mirror)) return AdviceOnAngles(columns);
+  if (!has_theta_i || !(has_theta_o || from_mirror)) {
+    if (std::string advice = AdviceOnAngles(columns); !advice.empty()) return advice;
+    return AdviceOnAzimuths(columns);
+  }
+  if (std::string advice = AdviceOnAzimuths(columns); !advice.empty()) return advice;
   const bool has_values =
       has([](ColumnRole role) { return role >= ColumnRole::kRed && role <= ColumnRole::kBand; });
   return has_values ? AdviceOnScale(columns) : AdviceOnValues(columns);

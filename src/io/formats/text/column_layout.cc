@@ -41,6 +41,8 @@ class ColumnLayouter {
     for (size_t k = 0; k < layout_.columns.size(); ++k) {
       if (layout_.columns[k].role == role) found.push_back(k);
     }
+    const auto is_word = [&](size_t k) { return layout_.columns[k].is_word; };
+    if (!std::ranges::all_of(found, is_word)) std::erase_if(found, is_word);
     return found;
   }
 
@@ -207,11 +209,11 @@ std::string LeftOutColumns(const ColumnLayout& layout) {
   return text + " and " + std::to_string(layout.left_out.size() - kMost) + " more";
 }
 
-bool MayBeFactor(const ColumnLayout& layout, bool by_flag) {
+bool MayBeFactor(const ColumnLayout& layout) {
   if (layout.values.empty()) return false;
   const TableColumn& first = layout.columns[layout.values[0]];
   const bool is_r = layout.values.size() == 1 && first.role == Role::kRed && !first.per_steradian;
-  return (is_r && !by_flag) || std::ranges::any_of(layout.values, [&](size_t k) {
+  return (is_r && !first.is_by_flag) || std::ranges::any_of(layout.values, [&](size_t k) {
            return layout.columns[k].is_reflectance;
          });
 }

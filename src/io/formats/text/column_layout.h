@@ -47,7 +47,7 @@ struct GivenAngles {
 
 // Whether the names leave open if values are f, or pi f as most of what is called reflectance is:
 // "R" alone, too, unless --columns calls it so.
-bool MayBeFactor(const ColumnLayout& layout, bool by_flag);
+bool MayBeFactor(const ColumnLayout& layout);
 
 // The layout of columns that the line of `lines` names; columns of wavelengths before others of
 // values if `prefers_bands`. Angles may be missing if they are given, phi_i if it is 0, and both

@@ -12,12 +12,33 @@ namespace {
 
 constexpr std::pair<std::string_view, std::string_view> kLetters[] = {
     {"入射角", "thetai"}, {"反射角", "thetao"}, {"受光角", "thetao"}, {"散射角", "thetao"},
-    {"方位角", "phi"},    {"á", "a"},           {"é", "e"},           {"ó", "o"},
-    {"à", "a"},           {"θ", "theta"},       {"ϑ", "theta"},       {"Θ", "theta"},
+    {"方位角", "phi"},    {"θ", "theta"},       {"ϑ", "theta"},       {"Θ", "theta"},
     {"φ", "phi"},         {"ϕ", "phi"},         {"Φ", "phi"},         {"ρ", "rho"},
-    {"λ", "lambda"},      {"µ", "u"},           {"μ", "u"},           {"°", "deg"},
-    {"º", "deg"},         {"ᵢ", "i"},           {"ₒ", "o"},           {"ᵣ", "r"},
-    {"ₛ", "s"},           {"⁻¹", "^-1"},        {"\xB0", "deg"}};
+    {"Δ", "delta"},       {"∆", "delta"},       {"π", "pi"},          {"λ", "lambda"},
+    {"µ", "u"},           {"μ", "u"},           {"°", "deg"},         {"º", "deg"},
+    {"ᵢ", "i"},           {"ₒ", "o"},           {"ᵣ", "r"},           {"ₛ", "s"},
+    {"₁", "1"},           {"₂", "2"},           {"⁻¹", "^-1"},        {"’", "'"},
+    {"\xB0", "deg"}};
+
+// The letters 0xC0 to 0xFF of Latin-1 without their accents.
+constexpr std::string_view kLatin1 =
+    "aaaaaaaceeeeiiiidnooooo*ouuuuypsaaaaaaaceeeeiiiidnooooo/ouuuuypy";
+
+bool IsContinuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+// Takes a letter with an accent, in UTF-8 or Latin-1, off the text; 0 if it begins with none.
+char TakeAccented(std::string_view* text) {
+  const auto first = static_cast<unsigned char>(text->front());
+  const bool has_continuation = text->size() > 1 && IsContinuation((*text)[1]);
+  if (first == 0xC3U && has_continuation) {
+    const auto letter = static_cast<unsigned char>((*text)[1]) - 0x80U;
+    text->remove_prefix(2);
+    return kLatin1[letter];
+  }
+  if (first < 0xC0U || has_continuation) return 0;
+  text->remove_prefix(1);
+  return kLatin1[first - 0xC0U];
+}
 
 }  // namespace
 
@@ -29,6 +50,8 @@ std::string Plain(std::string_view name) {
     if (letter != std::end(kLetters)) {
       plain += letter->second;
       name.remove_prefix(letter->first.size());
+    } else if (const char accented = TakeAccented(&name); accented != 0) {
+      plain += accented;
     } else {
       plain += static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
       name.remove_prefix(1);
@@ -45,6 +68,23 @@ std::string TakeBracket(std::string* plain) {
   std::string bracket(Trimmed(text.substr(open + 1, close - open - 1)));
   plain->resize(open);
   return bracket;
+}
+
+std::vector<std::string> WordsOf(std::string_view name) {
+  std::vector<std::string> words;
+  char before = 0;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_letter = std::isalpha(byte) != 0 || byte >= 0x80U;
+    const auto was = static_cast<unsigned char>(before);
+    const bool goes_on = is_letter && (std::isalpha(was) != 0 || was >= 0x80U) &&
+                         (std::isupper(byte) == 0 || std::isupper(was) != 0);
+    if (is_letter && !goes_on) words.emplace_back();
+    if (is_letter) words.back() += c;
+    before = c;
+  }
+  for (std::string& word : words) word = LettersAndDigits(Plain(word));
+  return words;
 }
 
 std::string LettersAndDigits(std::string_view plain) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/files/text_lines.h"
+#include "io/formats/text/angle_names.h"
 #include "io/formats/text/column_words.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/printable.h"
@@ -28,110 +29,6 @@ constexpr std::string_view kOtherUnits[] = {
     "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
 constexpr std::string_view kPerSteradianKeys[] = {"persr", "1sr", "sr1"};
 constexpr std::string_view kPerSteradian[] = {"1/sr", "sr^-1", "sr-1", "/sr", "sr^{-1}"};
-
-// --- Angles --------------------------------------------------------------------------------------
-
-constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar", "zen", "zn"};
-constexpr std::string_view kPhiWords[] = {"phi",    "azimuthal", "azimuth", "azimut",
-                                          "acimut", "azim",      "az"};
-constexpr std::string_view kElevationWords[] = {"elevation", "altitude", "elev"};
-constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
-                                          "incoming", "l",     "light", "src",         "source",
-                                          "sun",      "solar", "illum", "illumination"};
-constexpr std::string_view kOutgoing[] = {
-    "o",          "out",      "outgoing", "r",        "refl",     "reflected",
-    "reflection", "s",        "sc",       "scat",     "scatter",  "scattered",
-    "scattering", "v",        "view",     "viewing",  "viewer",   "e",
-    "exit",       "emission", "emergent", "obs",      "observer", "observation",
-    "sensor",     "camera",   "det",      "detector", "receiver"};
-// Words that need no word for an angle beside them.
-constexpr std::string_view kIncidentAlone[] = {
-    "inc",          "incident",   "incidence", "incoming",       "aoi",           "ti",
-    "thi",          "sza",        "einfall",   "einfallswinkel", "einfallwinkel", "dincidence",
-    "deincidencia", "diincidenza"};
-constexpr std::string_view kOutgoingAlone[] = {"outgoing",
-                                               "scatter",
-                                               "scattered",
-                                               "scattering",
-                                               "view",
-                                               "viewing",
-                                               "exit",
-                                               "emission",
-                                               "emergence",
-                                               "emission",
-                                               "detector",
-                                               "receiver",
-                                               "to",
-                                               "tho",
-                                               "tr",
-                                               "thr",
-                                               "vza",
-                                               "dobservation",
-                                               "deobservacion",
-                                               "diosservazione",
-                                               "ausfallswinkel",
-                                               "ausfallwinkel",
-                                               "beobachtungswinkel",
-                                               "streuwinkel",
-                                               "detektorwinkel"};
-
-// "angle from specular", "theta_s - theta_spec", "off-specular angle".
-constexpr std::string_view kFromMirror[] = {"fromspec",   "tospec",    "offspec",
-                                            "deltaspec",  "minusspec", "aspecular",
-                                            "frommirror", "tomirror",  "sthetaspec"};
-
-// Role of a theta or phi by the rest of its name.
-std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
-  if (side.empty()) return unsaid;
-  if (IsOneOf(side, kIncident)) return incident;
-  if (IsOneOf(side, kOutgoing)) return outgoing;
-  return std::nullopt;
-}
-
-std::optional<Role> RoleByWords(std::string_view key, std::span<const std::string_view> words,
-                                Role incident, Role outgoing, Role unsaid) {
-  for (const std::string_view word : words) {
-    std::optional<Role> role;
-    if (key.starts_with(word)) {
-      role = RoleBySide(key.substr(word.size()), incident, outgoing, unsaid);
-    }
-    if (!role && key.ends_with(word)) {
-      role = RoleBySide(key.substr(0, key.size() - word.size()), incident, outgoing, unsaid);
-    }
-    if (role) return role;
-  }
-  return std::nullopt;
-}
-
-std::optional<Role> AngleRole(std::string key) {
-  if (key == "angle") return Role::kTheta;
-  if (std::ranges::any_of(kFromMirror, [&](std::string_view word) {
-        return key.find(word) != std::string::npos;
-      })) {
-    return Role::kFromMirror;
-  }
-  for (const std::string_view word : {"angle", "angulo", "angolo", "of"}) {
-    if (const size_t at = key.find(word); at != std::string::npos) key.erase(at, word.size());
-  }
-  if (IsOneOf(key, kIncidentAlone)) return Role::kThetaI;
-  if (IsOneOf(key, kOutgoingAlone)) return Role::kThetaO;
-  if (key == "phase" || key == "pha") return Role::kPhase;
-  if (key == "pi" || key == "saa") return Role::kPhiI;
-  if (key == "po" || key == "pr" || key == "vaa") return Role::kPhiO;
-  if (key == "dphi" || key == "deltaphi" || key == "relativeazimuth" || key == "raa") {
-    return Role::kPhi;
-  }
-  if (const auto role = RoleByWords(key, kThetaWords, Role::kThetaI, Role::kThetaO, Role::kTheta)) {
-    return role;
-  }
-  return RoleByWords(key, kPhiWords, Role::kPhiI, Role::kPhiO, Role::kPhi);
-}
-
-// Role of an angle from the horizon: "sun elevation", "elevation_o", "altitude angle".
-std::optional<Role> ElevationRole(std::string key) {
-  if (const size_t at = key.find("angle"); at != std::string::npos) key.erase(at, 5);
-  return RoleByWords(key, kElevationWords, Role::kThetaI, Role::kThetaO, Role::kTheta);
-}
 
 // --- Values --------------------------------------------------------------------------------------
 
@@ -257,14 +154,18 @@ void SetRole(const std::string& plain, TableColumn* column) {
     }
     column->is_reflectance = !column->per_steradian && SaysReflectance(key);
   } else {
+    std::string name(Trimmed(plain));
     for (const std::string_view unit : kAngleUnits) {
       if (!TakeSuffix(unit, &key)) continue;
+      if (!TakeSuffix(unit, &name)) name = key;
       column->unit = unit;
       break;
     }
-    const auto elevation = ElevationRole(key);
-    column->from_horizon = elevation.has_value();
-    column->role = elevation ? *elevation : AngleRole(key).value_or(Role::kOther);
+    const AngleName angle = AngleNamed(name).value_or(AngleName{.role = Role::kOther});
+    column->role = angle.role;
+    column->from_horizon = angle.from_horizon;
+    column->is_difference = angle.is_difference;
+    column->is_word = angle.is_word;
   }
 }
 

@@ -6,27 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace trilobe {
+#include "io/formats/text/column_role.h"
 
-// Meaning of a column of a text table. The angles come first, as in ColumnLayout::angles.
-enum class ColumnRole {
-  kThetaI,
-  kPhiI,
-  kThetaO,
-  kPhiO,
-  kRed,
-  kGreen,
-  kBlue,
-  kValue,       // for all channels
-  kPolarised,   // f of one polarisation: half the sum of such columns is f
-  kBand,        // the value at a wavelength
-  kWavelength,  // of the row
-  kTheta,       // of a direction that the name does not say
-  kFromMirror,  // of wo from the mirror direction; in the plane of incidence > 0 beyond it
-  kPhi,
-  kPhase,  // angle between the two directions
-  kOther
-};
+namespace trilobe {
 
 // Scale of the numbers in a column of values: f itself, 10 lg f, lg f or ln f.
 enum class ValueScale { kLinear, kDecibels, kLog10, kLn };
@@ -40,6 +22,9 @@ struct TableColumn {
   ValueScale scale = ValueScale::kLinear;
   bool is_usual_name = false;   // "theta_i", "r", as the library writes it
   bool from_horizon = false;    // "sun elevation": 90 degrees minus theta
+  bool is_difference = false;   // "relative azimuth": phi_o minus phi_i
+  bool is_word = false;         // "detector": an angle, if no other column is that
+  bool is_by_flag = false;      // --columns says what it holds, or leaves it out
   bool per_steradian = false;   // the name says so
   bool is_reflectance = false;  // "reflectance", "band_865": pi f, as most mean it, or f
 };

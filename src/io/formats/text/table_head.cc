@@ -146,11 +146,40 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
   return head;
 }
 
+namespace {
+
+bool IsValue(ColumnRole role) { return role >= ColumnRole::kRed && role <= ColumnRole::kBand; }
+
+// Whether a column that is named takes the place of one that the header calls so.
+bool TakesPlaceOf(ColumnRole named, ColumnRole other) {
+  using Role = ColumnRole;
+  if (IsValue(named)) return IsValue(other);
+  switch (named) {
+    case Role::kThetaO:
+    case Role::kFromMirror:
+      return other == Role::kThetaO || other == Role::kTheta || other == Role::kFromMirror;
+    case Role::kThetaI:
+      return other == Role::kThetaI;
+    case Role::kPhiO:
+    case Role::kPhi:
+    case Role::kPhase:
+      return other == Role::kPhiO || other == Role::kPhi || other == Role::kPhase;
+    default:
+      return named == other && named != Role::kOther;
+  }
+}
+
+}  // namespace
+
 std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& header,
                                    const std::string& columns) {
   const std::vector<NamedColumn> named = NamedColumns(columns);
-  if (!IsByHeader(named)) return ColumnsNamed(head.names);
-  std::vector<std::string> whats(head.names.size(), "-");
+  if (!IsByHeader(named)) {
+    std::vector<TableColumn> all = ColumnsNamed(head.names);
+    for (TableColumn& column : all) column.is_by_flag = !columns.empty();
+    return all;
+  }
+  std::vector<std::string> whats(head.names.size());
   for (const auto& [what, in_header] : named) {
     const std::vector<size_t> at = PositionsOf(in_header, head.names);
     const std::string begin = "--columns names '" + in_header + "', ";
@@ -163,13 +192,25 @@ std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& heade
                       " times; name all columns in their order, as " + kUsualColumns,
                   ErrorKind::kConflict, "columns", in_header);
     }
-    if (whats[at[0]] != "-") header.Fail(begin + "twice", ErrorKind::kConflict, "columns", what);
+    if (!whats[at[0]].empty()) header.Fail(begin + "twice", ErrorKind::kConflict, "columns", what);
     const std::string unit = ColumnNamed(head.names[at[0]]).unit;
     whats[at[0]] = what;
     if (unit == "db" || (!unit.empty() && RadiansIn(unit))) whats[at[0]] += " [" + unit + "]";
   }
-  std::vector<TableColumn> found = ColumnsNamed(whats);
-  for (size_t k = 0; k < found.size(); ++k) found[k].name = head.names[k];
+  // The other columns keep the meaning of their names.
+  const std::vector<TableColumn> by_flag = ColumnsNamed(whats), by_name = ColumnsNamed(head.names);
+  std::vector<std::string> names = whats;
+  for (size_t k = 0; k < names.size(); ++k) {
+    const bool is_replaced = std::ranges::any_of(by_flag, [&](const TableColumn& column) {
+      return TakesPlaceOf(column.role, by_name[k].role);
+    });
+    if (whats[k].empty()) names[k] = is_replaced ? "-" : head.names[k];
+  }
+  std::vector<TableColumn> found = ColumnsNamed(names);
+  for (size_t k = 0; k < found.size(); ++k) {
+    found[k].name = head.names[k];
+    found[k].is_by_flag = !whats[k].empty();
+  }
   return found;
 }
 

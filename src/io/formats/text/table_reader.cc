@@ -57,7 +57,7 @@ class TableReader {
       turned = brighter_.same();
       measurement = ReadRows(turned);
     }
-    if (options_.scale == 0 && MayBeFactor(layout_, !options_.columns.empty())) {
+    if (options_.scale == 0 && MayBeFactor(layout_)) {
       header_.Fail(AdviceOnFactor(layout_.columns[layout_.values[0]].name,
                                   MedianReflected(measurement.samples)),
                    ErrorKind::kMissing, "scale", layout_.columns[layout_.values[0]].name);
