@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/files/utf16.h"
+#include "io/formats/text/given_angles.h"
 #include "io/formats/text/table_lines.h"
 #include "tests/error_of.h"
 #include "trilobe/core/base/angles.h"
@@ -76,10 +77,10 @@ TEST(OddTable, LinesGiveThetaIToTheRowsBelow) {
   EXPECT_NEAR(RadiansToDegrees(two.samples.directions[0].theta_i), 20, 1e-12);
   EXPECT_NEAR(RadiansToDegrees(two.samples.directions[1].theta_i), 40, 1e-12);
   EXPECT_THAT(two.notes, ElementsAre(HasSubstr("theta_i by lines between the rows")));
-  EXPECT_FALSE(GivenAngleIn("incidence angle: 30 samples"));
-  EXPECT_FALSE(GivenAngleIn("sample 30"));
-  EXPECT_FALSE(GivenAngleIn("theta_i: -30"));
-  EXPECT_FALSE(GivenAngleIn("theta_i [mrad]: 30"));
+  EXPECT_FALSE(AnglesInLine("incidence angle: 30 samples"));
+  EXPECT_FALSE(AnglesInLine("sample 30"));
+  EXPECT_FALSE(AnglesInLine("theta_i: -30"));
+  EXPECT_FALSE(AnglesInLine("theta_i [mrad]: 30"));
 }
 
 TEST(OddTable, ValuesThatAreNoBrdfAreNamed) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/files/text_lines.h"
+#include "io/formats/text/given_angles.h"
 #include "io/formats/text/table_columns.h"
 #include "io/formats/text/table_lines.h"
 #include "io/formats/text/text_table.h"
@@ -66,7 +67,7 @@ class MatrixRows {
   std::string Make() {
     while (lines_.NextWithComment()) {
       const std::string_view line = lines_.line();
-      if (line.front() == '#' || line.front() == '%' || GivenAngleIn(line)) {
+      if (line.front() == '#' || line.front() == '%' || AnglesInLine(line)) {
         AddText(line);
         continue;
       }

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/files/text_lines.h"
-#include "io/formats/text/table_columns.h"
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {
@@ -26,45 +25,6 @@ bool TakeUnit(std::string_view unit, std::string_view* cell) {
 }
 
 }  // namespace
-
-std::optional<GivenAngle> GivenAngleIn(std::string_view line) {
-  constexpr size_t kLongest = 200;
-  constexpr std::string_view kBetween = "=:;,\t \"";
-  while (!line.empty() && (line.front() == '#' || line.front() == '%')) line.remove_prefix(1);
-  line = Trimmed(line);
-  if (line.empty() || line.size() > kLongest || IsDigit(line.front())) return std::nullopt;
-  size_t first = line.find_first_of("0123456789");
-  if (first == std::string_view::npos || first == 0) return std::nullopt;
-  const size_t after_number = std::min(line.find_first_not_of("0123456789.,", first), line.size());
-  std::string_view number = line.substr(first, after_number - first);
-  while (!number.empty() && (number.back() == ',' || number.back() == '.')) number.remove_suffix(1);
-  std::optional<double> value = ToNumber(number);
-  if (!value) value = DecimalCommaNumber(number);
-  if (!value) return std::nullopt;
-  std::string_view name = line.substr(0, first);
-  if (kBetween.find(name.back()) == std::string_view::npos) return std::nullopt;  // "-30", "x30"
-  while (!name.empty() && kBetween.find(name.back()) != std::string_view::npos) {
-    name.remove_suffix(1);
-  }
-  // Behind the number stands its unit, and nothing else.
-  std::string_view rest = line.substr(first + number.size());
-  while (!rest.empty() && kBetween.find(rest.front()) != std::string_view::npos) {
-    rest.remove_prefix(1);
-  }
-  while (!rest.empty() && kBetween.find(rest.back()) != std::string_view::npos) {
-    rest.remove_suffix(1);
-  }
-  TableColumn column = ColumnNamed(name);
-  if (column.role != ColumnRole::kThetaI && column.role != ColumnRole::kPhiI) return std::nullopt;
-  if (!rest.empty()) {
-    const std::optional<std::string> unit = UnitIn(rest);
-    if (!unit) return std::nullopt;
-    column.unit = *unit;
-  }
-  const std::optional<double> unit = RadiansIn(column.unit);
-  if (!unit) return std::nullopt;
-  return GivenAngle{.is_theta = column.role == ColumnRole::kThetaI, .radians = *value * *unit};
-}
 
 std::string_view WithoutComment(std::string_view line) {
   for (size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {

@@ -7,14 +7,6 @@
 
 namespace trilobe {
 
-// Theta_i or phi_i [rad] that a line of text gives to the rows below it: "Incidence angle: 30 deg",
-// "# theta_i = 30", "AOI;30". One number, after a name of that angle.
-struct GivenAngle {
-  bool is_theta = true;  // else phi_i
-  double radians = 0;
-};
-std::optional<GivenAngle> GivenAngleIn(std::string_view line);
-
 // The line without a comment (from # on); "#N/A" and the like of spreadsheets begin none.
 std::string_view WithoutComment(std::string_view line);
 

@@ -8,13 +8,14 @@
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
-#include "io/formats/optical/zemax_angles.h"
 #include "io/formats/spectrum_bands.h"
 #include "io/formats/text/brighter_side.h"
 #include "io/formats/text/column_advice.h"
 #include "io/formats/text/column_layout.h"
+#include "io/formats/text/given_angles.h"
 #include "io/formats/text/matrix_table.h"
 #include "io/formats/text/repeated_rows.h"
+#include "io/formats/text/row_angles.h"
 #include "io/formats/text/row_choice.h"
 #include "io/formats/text/spectra_of_rows.h"
 #include "io/formats/text/table_columns.h"
@@ -33,15 +34,14 @@ class TableReader {
   TableReader(std::string_view text, const std::string& source, const SourceOptions& options)
       : source_(source),
         options_(options),
-        given_theta_i_(options.theta_i_deg != -1 ? DegreesToRadians(options.theta_i_deg)
-                                                 : ThetaIBeforeRows(text)),
-        given_theta_o_(DegreesToRadians(std::max(options.theta_o_deg, 0.0))),
-        given_{.theta_i = given_theta_i_.has_value(),
+        above_(AnglesBeforeRows(text)),
+        given_{.theta_i = options.theta_i_deg != -1 || above_.theta_i,
                .theta_o = options.theta_o_deg != -1,
                .values = options.may_lack_values},
         head_(HeadOf(text, source, options.columns, given_.theta_i || given_.theta_o)),
         header_(head_.lines),
         layout_(Layout()),
+        angles_(layout_, options, above_),
         row_(head_.separator, layout_),
         choice_(options.rows, head_.names, header_),
         apart_(ColumnApart(layout_, choice_.columns())) {
@@ -50,9 +50,10 @@ class TableReader {
 
   Measurement Read() {
     // Whether phi_o is that of the signs, turned by 180 degrees.
-    bool turned = !HasAzimuths();
+    bool turned = !angles_.HasAzimuths();
     Measurement measurement = ReadRows(turned);
-    by_brightness_ = in_plane_ && signed_ && brighter_.both() && !layout_.from_mirror;
+    by_brightness_ =
+        angles_.in_plane() && angles_.has_signs() && brighter_.both() && !layout_.from_mirror;
     if (by_brightness_ && brighter_.same() != turned) {
       turned = brighter_.same();
       measurement = ReadRows(turned);
@@ -65,19 +66,20 @@ class TableReader {
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
     if (repeated_.IsRepeated()) measurement.notes.push_back(NoteOnRepeated());
-    const auto note_unread = [&](double given, Angle angle, const std::string& name) {
+    const auto note_unread = [&](double given, RowAngles::Angle angle, const std::string& name) {
       if (given == -1 || !layout_.angles[angle]) return;
       measurement.notes.push_back("--" + name + " is of tables without a column " + name +
                                   ", and changes nothing here");
     };
-    note_unread(options_.theta_i_deg, kThetaI, "theta_i");
-    note_unread(options_.theta_o_deg, kThetaO, "theta_o");
+    if (const std::string note = angles_.NoteOnFlag(); !note.empty()) {
+      measurement.notes.push_back(note);
+    }
+    note_unread(options_.theta_i_deg, RowAngles::kThetaI, "theta_i");
+    note_unread(options_.theta_o_deg, RowAngles::kThetaO, "theta_o");
     return measurement;
   }
 
  private:
-  enum Angle { kThetaI, kPhiI, kThetaO, kPhiO };
-
   ColumnLayout Layout() {
     first_names_ = head_.names;
     GoToRows(&head_);
@@ -90,9 +92,6 @@ class TableReader {
                     /*prefers_bands=*/!options_.bands.empty());
   }
 
-  // Whether the phase gives one, too.
-  bool HasAzimuths() const { return layout_.angles[kPhiO] || layout_.phase; }
-
   Measurement ReadRows(bool turned) {
     SampleCollector collector(source_, "CSV file of scattered samples");
     if (!layout_.wavelengths.empty()) bands_.emplace(layout_.wavelengths, options_.bands, source_);
@@ -100,8 +99,7 @@ class TableReader {
     std::optional<SpectraOfRows> by_rows;
     if (layout_.wavelength && numbers_.size() == 1 && !bands_) by_rows.emplace();
     brighter_ = {};
-    block_theta_i_ = given_theta_i_.value_or(0);
-    block_phi_i_ = 0;
+    angles_.Begin();
     lines_after_ = 0;
     repeated_ = {};
     std::optional<TextLines> first_after;
@@ -123,12 +121,12 @@ class TableReader {
       }
       if (first_after) row_.FailAsRow(*first_after);  // it stands between rows
       if (!choice_.Takes(lines, &row_)) continue;
-      const SphericalAngles angles = Angles(lines, turned);
+      const SphericalAngles angles = angles_.Of(lines, turned, &row_);
       if (!Values(lines)) {
         if (!by_rows && !apart_) collector.LeaveOut(&BinCounts::missing);
         continue;
       }
-      if (in_plane_) brighter_.Add(theta_i_, theta_o_, Channels());
+      if (angles_.in_plane()) brighter_.Add(angles_.theta_i(), angles_.theta_o(), Channels());
       const double wavelength = CheckedWavelength(lines, by_rows.has_value());
       if (apart_) {
         repeated_.Add(row_.Cell(lines, *apart_), {angles, wavelength, numbers_});
@@ -149,7 +147,7 @@ class TableReader {
       by_rows->AddTo(&*bands_, &collector);
     }
     // Light from both sides of one plane shows nothing of a grain.
-    return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
+    return angles_.one_phi_i() ? collector.Take() : collector.TakeByAzimuths();
   }
 
   // The values of a row: one counts for all channels, and of a spectrum the first three.
@@ -163,93 +161,16 @@ class TableReader {
   // theta_i or phi_i to the rows below.
   bool IsBetween(const TextLines& lines) {
     const std::string_view line = lines.line();
-    if (const std::optional<GivenAngle> given = GivenAngleIn(line)) {
-      if (!given->is_theta && !layout_.angles[kPhiI]) block_phi_i_ = given->radians;
-      if (given->is_theta && !layout_.angles[kThetaI] && options_.theta_i_deg == -1) {
-        block_theta_i_ = given->radians;
-        has_blocks_ = true;
-      }
+    if (const AnglesInText given = AnglesInLine(line)) {
+      angles_.TakeGiven(lines, given);
       return true;
     }
+    if (line.starts_with('[') && line.ends_with(']')) return true;  // the name of a section
     if (WithoutComment(line).empty() || IsRule(line)) return true;
     std::vector<std::string_view> cells;
     SplitRow(line, head_.separator, &cells);
     if (cells.size() > head_.names.size() && cells.back().empty()) cells.pop_back();
     return std::ranges::equal(cells, first_names_);
-  }
-
-  // [rad]; `missing` without a column.
-  double AngleOf(const TextLines& lines, Angle angle, const AngleRange& range, double missing) {
-    const std::optional<size_t> column = layout_.angles[angle];
-    if (!column) return missing;
-    const TableColumn& of = layout_.columns[*column];
-    const double number = row_.Number(lines, *column);
-    if (!of.from_horizon) {
-      return ReadAngle(lines, *column, of.name, number, layout_.units[angle], range);
-    }
-    if (number < 0) {
-      lines.FailAt(*column, of.name,
-                   "an elevation below 0 is under the horizon; if it is counted from the normal, "
-                   "type --columns=" +
-                       std::string(kUsualNames[angle]) + "=" + of.name +
-                       ", and likewise the others",
-                   ErrorKind::kRange, FactText(number));
-    }
-    return kPi / 2 - ReadAngle(lines, *column, of.name, number, layout_.units[angle], {0, 90});
-  }
-
-  // Theta with its sign, which turns *phi by 180 degrees.
-  static double Unsigned(double theta, double* phi) {
-    if (theta >= -kAngleRounding) return std::max(theta, 0.0);
-    *phi += *phi > 0 ? -kPi : kPi;
-    return -theta;
-  }
-
-  // Of wo from that of wi, by cos g = cos theta_i cos theta_o + sin theta_i sin theta_o cos phi.
-  double AzimuthByPhase(const TextLines& lines) {
-    constexpr double kRounding = 2;  // degrees of three rounded angles
-    const size_t column = *layout_.phase;
-    const TableColumn& named = layout_.columns[column];
-    const double phase = ReadAngle(lines, column, named.name, row_.Number(lines, column),
-                                   RadiansIn(named.unit).value_or(1), {-180, 180});
-    const double theta_i = std::abs(theta_i_), theta_o = std::abs(theta_o_);
-    const double least = RadiansToDegrees(std::abs(theta_i - theta_o));
-    const double most = RadiansToDegrees(std::min(theta_i + theta_o, 2 * kPi - theta_i - theta_o));
-    const double degrees = RadiansToDegrees(std::abs(phase));
-    if (degrees < least - kRounding || degrees > most + kRounding) {
-      lines.FailAt(column, named.name,
-                   Text(degrees) + " deg is no angle between these directions, which are " +
-                       Text(least) + " to " + Text(most) + " deg apart",
-                   ErrorKind::kRange, FactText(degrees));
-    }
-    const double sines = std::sin(theta_i_) * std::sin(theta_o_);
-    if (std::abs(sines) < 1e-12) return 0;
-    const double cosine = (std::cos(phase) - std::cos(theta_i_) * std::cos(theta_o_)) / sines;
-    return std::acos(std::clamp(cosine, -1.0, 1.0));
-  }
-
-  SphericalAngles Angles(const TextLines& lines, bool turned) {
-    constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
-    theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
-    theta_o_ = AngleOf(lines, kThetaO, kTheta, given_theta_o_);
-    // The angle and the azimuth about the mirror direction; without an azimuth, in the plane.
-    const bool about_mirror = layout_.from_mirror && HasAzimuths();
-    if (layout_.from_mirror && !about_mirror) theta_o_ += theta_i_;
-    SphericalAngles at;
-    at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
-    at.phi_o = layout_.phase ? at.phi_i + AzimuthByPhase(lines) : AngleOf(lines, kPhiO, kPhi, 0);
-    signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
-    in_plane_ &= at.phi_i == at.phi_o && !layout_.phase;
-    if (!phi_i_) phi_i_ = at.phi_i;
-    one_phi_i_ &= at.phi_i == *phi_i_;
-    at.theta_i = Unsigned(theta_i_, &at.phi_i);
-    if (turned) at.phi_o += kPi;
-    at.theta_o = Unsigned(theta_o_, &at.phi_o);
-    if (!about_mirror) return at;
-    return ToSphericalAngles(ZemaxAngles{.rotation = kPi - at.phi_i,
-                                         .incidence = at.theta_i,
-                                         .azimuth = at.phi_o - at.phi_i,
-                                         .radial = at.theta_o});
   }
 
   // Takes the values of the row; false where none was measured.
@@ -324,8 +245,8 @@ class TableReader {
   // Whether the table has the layout that this library writes, once the only one that it read.
   bool IsUsual() const {
     return head_.separator == ',' && !head_.in_comment && head_.lines_before == 0 &&
-           lines_after_ == 0 && options_.columns.empty() && !signed_ && !row_.decimal_commas() &&
-           layout_.HasAllAngles() &&
+           lines_after_ == 0 && options_.columns.empty() && !angles_.has_signs() &&
+           !row_.decimal_commas() && layout_.HasAllAngles() &&
            std::ranges::all_of(layout_.columns, &TableColumn::is_usual_name);
   }
 
@@ -344,24 +265,21 @@ class TableReader {
 
   const std::string& source_;
   const SourceOptions& options_;
-  std::optional<double> given_theta_i_;  // [rad] by a flag, or above the rows
-  double given_theta_o_;                 // [rad] by a flag
+  AnglesInText above_;  // the rows, by lines of text
   GivenAngles given_;
   std::vector<std::string> first_names_;  // of the header, without units
   TableHead head_;
   TextLines header_;  // at its line
   ColumnLayout layout_;
+  RowAngles angles_;
   TableRow row_;
   RowChoice choice_;
   std::optional<size_t> apart_;  // the column of the kinds of repeated rows
   RepeatedRows repeated_;
-  std::vector<double> numbers_;               // the values of a row
-  double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
-  std::optional<double> phi_i_, wavelength_;  // of the first row
-  std::optional<SpectrumBands> bands_;        // of spectra
-  bool in_plane_ = true, signed_ = false, one_phi_i_ = true, by_brightness_ = false;
-  double block_theta_i_ = 0, block_phi_i_ = 0;  // [rad] of rows that do not have them
-  bool has_blocks_ = false;
+  std::vector<double> numbers_;         // the values of a row
+  std::optional<double> wavelength_;    // of the first row
+  std::optional<SpectrumBands> bands_;  // of spectra
+  bool by_brightness_ = false;
   int lines_after_ = 0;  // of text, behind the rows
   BrighterSide brighter_;
 };
@@ -385,24 +303,21 @@ std::string TableReader::Note(bool turned) const {
   say(layout_.HasAnglesIn(kPi / 180), "degrees");
   say(layout_.HasAnglesIn(1), "radians");
   say(layout_.HasAnglesIn(kPi / 200), "gon");
-  if (!layout_.angles[kThetaI]) {
-    say(has_blocks_, "theta_i by lines between the rows");
-    say(!has_blocks_, "theta_i = " + Text(RadiansToDegrees(*given_theta_i_)) + " deg");
-  }
-  say(!layout_.angles[kThetaO], "theta_o = " + Text(options_.theta_o_deg) + " deg");
-  say(!layout_.angles[kPhiI], "phi_i = 0");
+  say(!angles_.ThetaINote().empty(), angles_.ThetaINote());
+  say(!layout_.angles[RowAngles::kThetaO], "theta_o = " + Text(options_.theta_o_deg) + " deg");
+  say(!angles_.PhiINote().empty(), angles_.PhiINote());
   const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
                                   : "theta_o > 0 on the side of the light";
-  const bool by_side = (!HasAzimuths() && !layout_.from_mirror) || by_brightness_;
+  const bool by_side = (!angles_.HasAzimuths() && !layout_.from_mirror) || by_brightness_;
   say(layout_.phase.has_value(), "azimuths by the angle between the directions");
-  say(layout_.from_mirror && !HasAzimuths(),
+  say(layout_.from_mirror && !angles_.HasAzimuths(),
       "theta_o as theta_i and that angle, > 0 from the mirror direction away from the normal");
-  say(layout_.from_mirror && HasAzimuths(),
+  say(layout_.from_mirror && angles_.HasAzimuths(),
       "theta_o as the angle from the mirror direction, and phi_o as the azimuth about it, 0 "
       "towards "
       "the normal");
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
-  say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
+  say(angles_.has_signs() && !by_side, "theta < 0 as phi + 180 deg");
   const bool is_one = bands_ ? bands_->read().size() == 1 : numbers_.size() == 1;
   say(is_one, "one value for all channels");
   const ValueScale scale =

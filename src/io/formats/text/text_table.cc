@@ -107,7 +107,7 @@ std::optional<Names> NamesIn(std::string_view line, const Place& place) {
 
 // Text behind the mark of a comment; none if the line is no comment.
 std::optional<std::string_view> CommentOf(std::string_view line) {
-  const size_t first = line.find_first_not_of("#%");
+  const size_t first = line.find_first_not_of("#%!");
   if (first == 0) return std::nullopt;
   return Trimmed(line.substr(std::min(first, line.size())));
 }
@@ -212,7 +212,7 @@ std::optional<TableHead> FindTableHead(std::string_view text, const std::string&
     const std::string_view line =
         comment ? *comment : Trimmed(lines.line().substr(0, lines.line().find('#')));
     std::optional<Names> found;
-    if (!GivenAngleIn(line)) found = NamesIn(line, {comment.has_value(), theta_is_given});
+    if (!AnglesInLine(line)) found = NamesIn(line, {comment.has_value(), theta_is_given});
     if (found) {
       // A column of indices may have no name.
       if (lines.whole_line().starts_with('\t')) found->names.insert(found->names.begin(), "");
@@ -325,16 +325,17 @@ void GoToRows(TableHead* head) {
   head->lines = next;
 }
 
-std::optional<double> ThetaIBeforeRows(std::string_view text) {
+AnglesInText AnglesBeforeRows(std::string_view text) {
   constexpr int kMostLines = 200;
   TextLines lines(text, "");
+  AnglesInText first;
   for (int k = 0; k < kMostLines && lines.NextWithComment(); ++k) {
-    if (const auto given = GivenAngleIn(lines.line()); given && given->is_theta) {
-      return given->radians;
-    }
-    if (LooksLikeRow(WithoutComment(lines.line()))) break;
+    const AnglesInText given = AnglesInLine(lines.line());
+    if (!first.theta_i) first.theta_i = given.theta_i;
+    if (!first.phi_i) first.phi_i = given.phi_i;
+    if (!given && LooksLikeRow(WithoutComment(lines.line()))) break;
   }
-  return std::nullopt;
+  return first;
 }
 
 }  // namespace trilobe

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/files/text_lines.h"
+#include "io/formats/text/given_angles.h"
 #include "io/formats/text/table_columns.h"
 
 namespace trilobe {
@@ -61,8 +62,8 @@ void CheckLines(std::string_view text, const std::string& source);
 // Cells of a row without quotes and white space at their ends.
 void SplitRow(std::string_view line, char separator, std::vector<std::string_view>* cells);
 
-// The theta_i [rad] that the lines before the first row of numbers give (GivenAngleIn).
-std::optional<double> ThetaIBeforeRows(std::string_view text);
+// The first theta_i and phi_i that the lines before the first row of numbers give.
+AnglesInText AnglesBeforeRows(std::string_view text);
 
 }  // namespace trilobe
 
