@@ -30,7 +30,8 @@ class ColumnLayouter {
     LayAngles(given);
     LayValues(prefers_bands, /*may_lack=*/given.values);
     for (size_t k = 0; k < is_read_.size(); ++k) {
-      if (!is_read_[k]) layout_.left_out.push_back(k);
+      const bool is_empty = layout_.columns[k].name.empty();
+      if (!is_read_[k] && !is_empty) layout_.left_out.push_back(k);
     }
     return std::move(layout_);
   }
@@ -183,6 +184,9 @@ std::vector<std::string> RenamedColumns(const ColumnLayout& layout) {
   };
   for (int k = 0; k < kAngles; ++k) {
     if (layout.angles[k]) add(*layout.angles[k], kUsualNames[k]);
+  }
+  if (layout.phase && IsCalled(layout.columns[*layout.phase].name, "phi")) {
+    add(*layout.phase, "the phase, which it is where i or e is 0");
   }
   if (layout.is_polarised) {
     std::string names;

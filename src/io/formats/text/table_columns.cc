@@ -32,10 +32,28 @@ constexpr std::string_view kPerSteradian[] = {"1/sr", "sr^-1", "sr-1", "/sr", "s
 
 // --- Values --------------------------------------------------------------------------------------
 
-constexpr std::string_view kValues[] = {"brdf",        "bsdf",         "bdrf", "frdb",
-                                        "reflectance", "reflectivity", "refl", "rho",
-                                        "value",       "val",          "fr",   "f"};
-constexpr std::string_view kReflectances[] = {"reflectance", "reflectivity", "refl", "rho"};
+constexpr std::string_view kValues[] = {"brdf",
+                                        "bsdf",
+                                        "bdrf",
+                                        "frdb",
+                                        "reflectance",
+                                        "reflectivity",
+                                        "refl",
+                                        "rho",
+                                        "reflexionsgrad",
+                                        "remission",
+                                        "remissionsgrad",
+                                        "reflektanz",
+                                        "reflectancia",
+                                        "riflettanza",
+                                        "bidirectionalreflectance",
+                                        "value",
+                                        "val",
+                                        "fr",
+                                        "f"};
+constexpr std::string_view kReflectances[] = {
+    "reflectance", "reflectivity", "refl",         "rho",         "reflexionsgrad",
+    "remission",   "reflektanz",   "reflectancia", "riflettanza", "bidirectionalreflectance"};
 constexpr std::string_view kSaysBrdf[] = {"brdf", "bsdf", "bdrf", "frdb"};
 
 bool SaysReflectance(std::string_view key) {
@@ -103,7 +121,10 @@ bool IsSigned(std::string_view before) {
   return false;
 }
 
-constexpr std::string_view kWavelength[] = {"lambda", "wl", "wavelength"};
+constexpr std::string_view kWavelength[] = {
+    "lambda",        "wl", "wvl", "wavelength", "wellenlange", "longueurdonde", "lunghezzadonda",
+    "longituddeonda"};
+constexpr std::string_view kLengths[] = {"nm", "um", "m", "micron", "microns"};
 // Names of reflectance before a wavelength alone.
 constexpr std::string_view kReflectanceAt[] = {"r", "band"};
 
@@ -145,7 +166,14 @@ void SetRole(const std::string& plain, TableColumn* column) {
   }
   std::string key = LettersAndDigits(plain);
   column->scale = TakeScale(&key);
-  if (IsOneOf(key, kWavelength)) {
+  std::string wavelength = key;
+  for (const std::string_view unit : kLengths) {
+    if (IsOneOf(key, kWavelength) || !TakeSuffix(unit, &wavelength)) continue;
+    if (!IsOneOf(wavelength, kWavelength)) wavelength = key;
+    if (wavelength != key) column->unit = unit;
+    if (wavelength != key) break;
+  }
+  if (IsOneOf(wavelength, kWavelength)) {
     column->role = Role::kWavelength;
   } else if (const auto value = ValueRole(key)) {
     column->role = *value;
@@ -240,24 +268,72 @@ void MarkPolarised(std::vector<TableColumn>* columns) {
 
 }  // namespace
 
+namespace {
+
+// Names that are known beside one another.
+class NamedTogether {
+ public:
+  explicit NamedTogether(std::vector<TableColumn>* columns) : columns_(*columns) {}
+
+  void Mark() {
+    if (HasTheta()) return MarkBands();
+    // The first direction is that of the light: "theta1" and "theta2".
+    if (Both("theta1", "theta2", Role::kThetaI, Role::kThetaO)) {
+      Both("phi1", "phi2", Role::kPhiI, Role::kPhiO);
+      return;
+    }
+    // The incidence, the emission and the phase of photometry, and no index and error of others.
+    if (!Both("i", "e", Role::kThetaI, Role::kThetaO)) return;
+    TableColumn* const alpha = Called("alpha");
+    TableColumn* const phase = alpha != nullptr ? alpha : Called("g");
+    const bool is_green = phase != alpha && (Has(Role::kRed) || Has(Role::kBlue));
+    if (phase != nullptr && !is_green) phase->role = Role::kPhase;
+  }
+
+ private:
+  TableColumn* Called(std::string_view name) {
+    const auto found = std::ranges::find_if(
+        columns_, [&](const TableColumn& column) { return IsCalled(column.name, name); });
+    return found == columns_.end() ? nullptr : &*found;
+  }
+
+  bool Has(Role role) const {
+    return std::ranges::find(columns_, role, &TableColumn::role) != columns_.end();
+  }
+  bool HasTheta() const { return Has(Role::kThetaI) || Has(Role::kThetaO) || Has(Role::kTheta); }
+
+  bool Both(std::string_view first, std::string_view second, Role of_first, Role of_second) {
+    TableColumn *const one = Called(first), *const other = Called(second);
+    if (one == nullptr || other == nullptr) return false;
+    one->role = of_first;
+    other->role = of_second;
+    return true;
+  }
+
+  // Numbers of wavelengths beside angles of the sun are reflectances of satellites.
+  void MarkBands() {
+    const bool of_sun = std::ranges::any_of(columns_, [](const TableColumn& column) {
+      const std::string key = LettersAndDigits(Plain(column.name));
+      return column.role == Role::kThetaI &&
+             (key.starts_with("sza") || key.starts_with("sun") || key.starts_with("sol"));
+    });
+    if (!of_sun) return;
+    for (TableColumn& column : columns_) {
+      const bool is_number = column.name.find_first_not_of("0123456789.") == std::string::npos;
+      if (column.role == Role::kBand && is_number) column.is_reflectance = true;
+    }
+  }
+
+  std::vector<TableColumn>& columns_;
+};
+
+}  // namespace
+
 std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
   std::vector<TableColumn> columns;
   for (const std::string& name : names) columns.push_back(ColumnNamed(name));
   MarkPolarised(&columns);
-  const auto called = [&](std::string_view name) {
-    return std::ranges::find_if(
-        columns, [&](const TableColumn& column) { return IsCalled(column.name, name); });
-  };
-  const auto has = [&](Role role) {
-    return std::ranges::find(columns, role, &TableColumn::role) != columns.end();
-  };
-  // The incidence, the emission and the phase of photometry, and no index and error of others.
-  if (has(Role::kThetaI) || has(Role::kThetaO) || has(Role::kTheta)) return columns;
-  const auto incidence = called("i"), emission = called("e"), phase = called("g");
-  if (incidence == columns.end() || emission == columns.end()) return columns;
-  incidence->role = Role::kThetaI;
-  emission->role = Role::kThetaO;
-  if (phase != columns.end() && !has(Role::kRed) && !has(Role::kBlue)) phase->role = Role::kPhase;
+  NamedTogether(&columns).Mark();
   return columns;
 }
 

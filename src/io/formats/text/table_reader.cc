@@ -1,5 +1,3 @@
-#include "io/formats/text/table_reader.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,8 +10,10 @@
 #include "io/formats/text/brighter_side.h"
 #include "io/formats/text/column_advice.h"
 #include "io/formats/text/column_layout.h"
+#include "io/formats/text/first_rows.h"
 #include "io/formats/text/given_angles.h"
 #include "io/formats/text/matrix_table.h"
+#include "io/formats/text/phase_column.h"
 #include "io/formats/text/repeated_rows.h"
 #include "io/formats/text/row_angles.h"
 #include "io/formats/text/row_choice.h"
@@ -21,6 +21,7 @@
 #include "io/formats/text/table_columns.h"
 #include "io/formats/text/table_head.h"
 #include "io/formats/text/table_lines.h"
+#include "io/formats/text/table_reader.h"
 #include "io/formats/text/table_row.h"
 #include "io/formats/text/text_table.h"
 #include "model/measurement/sample_symptoms.h"
@@ -83,8 +84,10 @@ class TableReader {
   ColumnLayout Layout() {
     first_names_ = head_.names;
     GoToRows(&head_);
-    const std::vector<TableColumn> columns = ColumnsOf(head_, header_, options_.columns);
-    if (const std::string advice = AdviceOn(columns, given_); !advice.empty()) {
+    std::vector<TableColumn> columns = ColumnsOf(head_, header_, options_.columns);
+    const FirstRows rows(head_);
+    MarkPhase(rows, &columns);
+    if (const std::string advice = AdviceOn(columns, given_, rows); !advice.empty()) {
       header_.Fail(advice, ErrorKind::kUnsupported, "columns");
     }
     CheckNames(options_.columns);
@@ -210,8 +213,9 @@ class TableReader {
     const size_t column = *layout_.wavelength;
     const std::string& unit = layout_.columns[column].unit;
     const double number = row_.Number(lines, column);
-    const bool micrometres =
-        unit == "um" || (unit.empty() && number >= kShortest && number <= kLongest);
+    if (unit == "m") return 1e9 * number;
+    const bool micrometres = unit == "um" || unit.starts_with("micron") ||
+                             (unit.empty() && number >= kShortest && number <= kLongest);
     return micrometres ? 1000 * number : number;
   }
 
