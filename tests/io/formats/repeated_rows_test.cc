@@ -54,15 +54,53 @@ TEST(RepeatedRows, TheMeanOfKindsIsTaken) {
 }
 
 TEST(RepeatedRows, WhatTellsNothingApartIsReadRowByRow) {
-  // Another column, kinds of another number of polarisations, a kind twice, and one kind alone.
-  for (const std::string& text :
-       {Table("side", "s", "p"), Table("pol", "ss", "pp"), Table("pol", "s", "s")}) {
+  // Kinds of another number of polarisations, and a kind twice.
+  for (const std::string& text : {Table("pol", "ss", "pp"), Table("side", "s", "s")}) {
     const Measurement read = Read(text);
     EXPECT_THAT(FirstsOf(read), ElementsAre(0.25, 0.75, 4, 2)) << text;
     EXPECT_THAT(read.notes, Not(Contains(HasSubstr("mean is taken"))));
   }
   EXPECT_THAT(FirstsOf(Read("theta_i,theta_o,sample,f\n30,10,1,1\n30,20,2,2\n30,30,3,3\n")),
               ElementsAre(1, 2, 3));
+}
+
+TEST(RepeatedRows, ColumnsOfAnyNameTellRowsApart) {
+  for (const char* const name : {"laser", "Probe", "no", "detector", "Muster"}) {
+    const Measurement read = Read(Table(name, "A", "B"));
+    EXPECT_THAT(FirstsOf(read), ElementsAre(0.5, 3)) << name;
+    EXPECT_THAT(read.notes, Contains(HasSubstr(std::string("column '") + name +
+                                               "' (A, B) tells rows of the same directions")));
+    EXPECT_THAT(FirstsOf(Read(Table(name, "A", "B"), {.rows = std::string(name) + "=B"})),
+                ElementsAre(0.75, 4));
+  }
+  EXPECT_THAT(FirstsOf(Read(Table("no", "1", "2"))), ElementsAre(0.5, 3));
+  // Numbers may be an angle that is not read, and cells that differ everywhere are no kinds.
+  EXPECT_THAT(ReadError(Table("w", "0", "180")),
+              IsError(ErrorKind::kUnsupported, {.line = 1, .key = "rows", .value = "w"}));
+  EXPECT_THAT(FirstsOf(Read(Table("w", "0", "180"), {.columns = "-=w"})),
+              ElementsAre(0.25, 0.75, 4, 2));
+  EXPECT_THAT(FirstsOf(Read("theta_i,theta_o,std,f\n30,10,.1,1\n30,10,.2,2\n30,20,.3,3\n")),
+              ElementsAre(1, 2, 3));
+}
+
+TEST(RepeatedRows, TwoColumnsOfPolarisationsAreOne) {
+  const Measurement read = Read(
+      "theta_i,theta_o,pol_in,pol_out,f\n30,10,s,s,1\n30,10,s,p,0.25\n30,10,p,s,0.25\n"
+      "30,10,p,p,0.5\n");
+  EXPECT_THAT(FirstsOf(read), ElementsAre(1));
+  EXPECT_THAT(read.notes, Contains(HasSubstr("--rows=pol_in=CELL,pol_out=CELL reads one")));
+}
+
+TEST(RepeatedRows, KindsAtOtherDirectionsAreReadAsOneAndTold) {
+  const std::string rows = ",f\n30,10,A,1\n30,20,A,2\n30,30,B,3\n30,40,B,4\n";
+  for (const char* const name : {"sample", "Specimen", "material", "pol"}) {
+    EXPECT_THAT(Read(std::string("theta_i,theta_o,") + name + rows).notes,
+                Contains(std::string("column '") + name +
+                         "' has A, B, which are read as one; --rows=" + name + "=A reads one"));
+  }
+  EXPECT_THAT(Read("theta_i,theta_o,side" + rows).notes, ElementsAre(HasSubstr("read as")));
+  EXPECT_THAT(Read("theta_i,theta_o,pol,f\n30,10,s,1\n30,20,s,2\n").notes,
+              Contains(HasSubstr("light of one polarisation")));
 }
 
 TEST(RepeatedRows, HalfTheSumOfFourPolarisationsCounts) {

@@ -9,27 +9,12 @@
 namespace trilobe {
 namespace {
 
-constexpr std::string_view kRepetitions[] = {"sample",      "sampleid",  "specimen", "repeat",
-                                             "repetition",  "replicate", "run",      "trial",
-                                             "measurement", "spot",      "scan"};
 // Polarisations of light and detector: f is half the sum of all four, and not their mean.
 constexpr std::string_view kCrossed[] = {"ss", "sp", "ps", "pp", "hh", "hv", "vh", "vv"};
 
 bool IsCrossedKind(const std::string& kind) { return IsOneOf(Plain(kind), kCrossed); }
 
 }  // namespace
-
-std::optional<size_t> ColumnApart(const ColumnLayout& layout, const std::vector<size_t>& chosen) {
-  std::optional<size_t> found;
-  for (const size_t k : layout.left_out) {
-    const std::string key = LettersAndDigits(Plain(layout.columns[k].name));
-    if (!key.starts_with("pol") && !IsOneOf(key, kRepetitions)) continue;
-    if (std::ranges::find(chosen, k) != chosen.end()) continue;
-    if (found) return std::nullopt;
-    found = k;
-  }
-  return found;
-}
 
 void RepeatedRows::Add(std::string_view kind, Row row) {
   const size_t number = std::ranges::find(kinds_, kind) - kinds_.begin();

@@ -4,22 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "io/formats/text/column_layout.h"
 #include "trilobe/core/base/directions.h"
 
 namespace trilobe {
 
-// The column that is not read and by its name tells rows of the same directions apart: that of the
-// polarisation, or of samples or repetitions, unless it is `chosen` by. None where there are
-// several.
-std::optional<size_t> ColumnApart(const ColumnLayout& layout, const std::vector<size_t>& chosen);
-
-// Rows of a table that has such a column, whose cells are the kinds of rows, "s" and "p".
+// Rows of a table that has a column whose cells are the kinds of rows, "s" and "p".
 class RepeatedRows {
  public:
   struct Row {

@@ -1,7 +1,10 @@
+#include "io/formats/text/table_reader.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/text.h"
@@ -12,6 +15,7 @@
 #include "io/formats/text/column_layout.h"
 #include "io/formats/text/first_rows.h"
 #include "io/formats/text/given_angles.h"
+#include "io/formats/text/kind_columns.h"
 #include "io/formats/text/matrix_table.h"
 #include "io/formats/text/phase_column.h"
 #include "io/formats/text/repeated_rows.h"
@@ -21,7 +25,6 @@
 #include "io/formats/text/table_columns.h"
 #include "io/formats/text/table_head.h"
 #include "io/formats/text/table_lines.h"
-#include "io/formats/text/table_reader.h"
 #include "io/formats/text/table_row.h"
 #include "io/formats/text/text_table.h"
 #include "model/measurement/sample_symptoms.h"
@@ -45,13 +48,14 @@ class TableReader {
         angles_(layout_, options, above_),
         row_(head_.separator, layout_),
         choice_(options.rows, head_.names, header_),
-        apart_(ColumnApart(layout_, choice_.columns())) {
+        kinds_(layout_, choice_.columns()) {
     numbers_.resize(layout_.is_polarised ? 1 : layout_.values.size());
   }
 
   Measurement Read() {
     // Whether phi_o is that of the signs, turned by 180 degrees.
     bool turned = !angles_.HasAzimuths();
+    FindApart(turned);
     Measurement measurement = ReadRows(turned);
     by_brightness_ =
         angles_.in_plane() && angles_.has_signs() && brighter_.both() && !layout_.from_mirror;
@@ -67,6 +71,7 @@ class TableReader {
     if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
     if (repeated_.IsRepeated()) measurement.notes.push_back(NoteOnRepeated());
+    for (std::string& note : kinds_.Notes()) measurement.notes.push_back(std::move(note));
     const auto note_unread = [&](double given, RowAngles::Angle angle, const std::string& name) {
       if (given == -1 || !layout_.angles[angle]) return;
       measurement.notes.push_back("--" + name + " is of tables without a column " + name +
@@ -93,6 +98,22 @@ class TableReader {
     CheckNames(options_.columns);
     return LayoutOf(header_, columns, given_,
                     /*prefers_bands=*/!options_.bands.empty());
+  }
+
+  // Looks for what tells rows of the same directions apart.
+  void FindApart(bool turned) {
+    angles_.Begin();
+    for (TextLines lines = head_.lines; kinds_.MayTell() && lines.NextWithComment();) {
+      if (!row_.Take(lines)) {
+        IsBetween(lines);
+        continue;
+      }
+      if (!choice_.Takes(lines, &row_)) continue;
+      const SphericalAngles at = angles_.Of(lines, turned, &row_);
+      if (!Values(lines)) continue;
+      kinds_.Add(lines, at, layout_.wavelength ? WavelengthOf(lines) : 0, &row_);
+    }
+    apart_ = kinds_.Found(header_);
   }
 
   Measurement ReadRows(bool turned) {
@@ -126,13 +147,13 @@ class TableReader {
       if (!choice_.Takes(lines, &row_)) continue;
       const SphericalAngles angles = angles_.Of(lines, turned, &row_);
       if (!Values(lines)) {
-        if (!by_rows && !apart_) collector.LeaveOut(&BinCounts::missing);
+        if (!by_rows && apart_.empty()) collector.LeaveOut(&BinCounts::missing);
         continue;
       }
       if (angles_.in_plane()) brighter_.Add(angles_.theta_i(), angles_.theta_o(), Channels());
       const double wavelength = CheckedWavelength(lines, by_rows.has_value());
-      if (apart_) {
-        repeated_.Add(row_.Cell(lines, *apart_), {angles, wavelength, numbers_});
+      if (!apart_.empty()) {
+        repeated_.Add(KindColumns::KindOf(lines, apart_, &row_), {angles, wavelength, numbers_});
       } else {
         add(lines, angles, wavelength);
       }
@@ -257,14 +278,20 @@ class TableReader {
   std::string Note(bool turned) const;
 
   std::string NoteOnRepeated() const {
-    const std::string& name = layout_.columns[*apart_].name;
+    std::string names, flag = "--rows=";
+    for (const size_t k : apart_) {
+      const std::string& name = layout_.columns[k].name;
+      names += (names.empty() ? "'" : "' and '") + name;
+      flag += (flag.ends_with('=') ? "" : ",") + name + "=CELL";
+    }
+    const bool is_one = apart_.size() == 1;
     const int lack = repeated_.incomplete();
-    return "column '" + name + "' (" + repeated_.Kinds() +
-           ") tells rows of the same directions apart: " +
+    return std::string(is_one ? "column " : "columns ") + names + "' (" + repeated_.Kinds() +
+           (is_one ? ") tells" : ") tell") + " rows of the same directions apart: " +
            (repeated_.IsCrossed() ? "half their sum" : "their mean") + " is taken" +
            (lack > 0 ? ", " + std::to_string(lack) + " directions that lack one are left out"
                      : "") +
-           "; --rows=" + name + "=CELL reads one alone";
+           "; " + flag + " reads one alone";
   }
 
   const std::string& source_;
@@ -278,7 +305,8 @@ class TableReader {
   RowAngles angles_;
   TableRow row_;
   RowChoice choice_;
-  std::optional<size_t> apart_;  // the column of the kinds of repeated rows
+  KindColumns kinds_;
+  std::vector<size_t> apart_;  // the columns of the kinds of repeated rows
   RepeatedRows repeated_;
   std::vector<double> numbers_;         // the values of a row
   std::optional<double> wavelength_;    // of the first row
