@@ -66,6 +66,11 @@ double RowAngles::AngleOf(const TextLines& lines, Angle angle, const AngleRange&
   const std::optional<size_t> column = layout_.angles[angle];
   if (!column) return missing;
   const TableColumn& of = layout_.columns[*column];
+  if (row->IsGapAt(*column)) {
+    lines.FailAt(*column, of.name,
+                 "no angle; each row has its own: fill the cells down with the one above them",
+                 ErrorKind::kMissing);
+  }
   const double number = row->Number(lines, *column);
   if (!of.from_horizon) {
     return ReadAngle(lines, *column, of.name, number, layout_.units[angle], range);
@@ -103,6 +108,15 @@ double RowAngles::AzimuthByPhase(const TextLines& lines, TableRow* row) const {
   return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
+// Where a direction is the normal, nothing, NaN or -999 may stand in the place of its azimuth.
+bool RowAngles::HasNoAzimuth(Angle angle, const TextLines& lines, TableRow* row) const {
+  const std::optional<size_t> column = layout_.angles[angle];
+  if (!column) return false;
+  if (row->IsGapAt(*column)) return true;
+  const double radians = row->Number(lines, *column) * layout_.units[angle];
+  return !(std::abs(radians) <= 2 * kPi + kAngleRounding);
+}
+
 SphericalAngles RowAngles::Of(const TextLines& lines, bool turned, TableRow* row) {
   constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
   has_rows_ = true;
@@ -112,9 +126,13 @@ SphericalAngles RowAngles::Of(const TextLines& lines, bool turned, TableRow* row
   const bool about_mirror = layout_.from_mirror && HasAzimuths();
   if (layout_.from_mirror && !about_mirror) theta_o_ += theta_i_;
   SphericalAngles at;
-  at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_, row);
-  at.phi_o = layout_.phase ? at.phi_i + AzimuthByPhase(lines, row)
-                           : AngleOf(lines, kPhiO, kPhi, at.phi_i, row);
+  const auto phi_of = [&](Angle angle, double theta, double missing) {
+    if (theta == 0 && HasNoAzimuth(angle, lines, row)) return 0.0;
+    return AngleOf(lines, angle, kPhi, missing, row);
+  };
+  at.phi_i = phi_of(kPhiI, theta_i_, block_phi_i_);
+  at.phi_o =
+      layout_.phase ? at.phi_i + AzimuthByPhase(lines, row) : phi_of(kPhiO, theta_o_, at.phi_i);
   if (adds_phi_i_) at.phi_o += at.phi_i;
   signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
   in_plane_ &= at.phi_i == at.phi_o && !layout_.phase;

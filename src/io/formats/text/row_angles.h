@@ -51,6 +51,7 @@ class RowAngles {
   bool IsByFlag(double theta_i) const;
   double AngleOf(const TextLines& lines, Angle angle, const AngleRange& range, double missing,
                  TableRow* row) const;
+  bool HasNoAzimuth(Angle angle, const TextLines& lines, TableRow* row) const;
   double AzimuthByPhase(const TextLines& lines, TableRow* row) const;
 
   const ColumnLayout& layout_;

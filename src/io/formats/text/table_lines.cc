@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <utility>
 
 #include "core/files/text_lines.h"
 #include "trilobe/core/base/printable.h"
@@ -15,6 +16,14 @@ constexpr std::string_view kCellErrors[] = {"#N/A",   "#NV",    "#DIV/0!", "#VAL
                                             "#WERT!", "#REF!",  "#BEZUG!", "#NUM!",
                                             "#ZAHL!", "#NAME?", "#NULL!"};
 constexpr std::string_view kGaps[] = {"", "-", "--", "NA", "N/A", "n/a", "null", "NULL"};
+
+// In lower case.
+constexpr std::string_view kMoreGaps[] = {"none", "nd", "n.d.", "n.a.", "."};
+
+bool IsEmptyMark(std::string_view cell) {
+  return std::ranges::find(kGaps, cell) != std::end(kGaps) ||
+         std::ranges::find(kCellErrors, cell) != std::end(kCellErrors);
+}
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
@@ -37,8 +46,14 @@ std::string_view WithoutComment(std::string_view line) {
 }
 
 bool IsGap(std::string_view cell) {
-  return std::ranges::find(kGaps, cell) != std::end(kGaps) ||
-         std::ranges::find(kCellErrors, cell) != std::end(kCellErrors);
+  constexpr size_t kLongest = 4;
+  if (IsEmptyMark(cell)) return true;
+  if (cell.find_first_not_of('*') == std::string_view::npos) return true;  // too narrow a cell
+  if (cell.size() > kLongest) return false;
+  std::string lower(cell);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(kMoreGaps, lower) != std::end(kMoreGaps);
 }
 
 std::optional<double> DecimalCommaNumber(std::string_view cell) {
@@ -81,9 +96,45 @@ bool IsRule(std::string_view line) {
          line.find_first_not_of("-=+|: \t") == std::string_view::npos;
 }
 
+bool IsEmptyRow(std::string_view line) {
+  return line.find_first_not_of(",;|\" \t") == std::string_view::npos;
+}
+
 bool IsText(std::string_view line) {
   const std::string_view word = line.substr(0, line.find_first_of(" \t,;|=:"));
-  return !word.empty() && std::ranges::none_of(word, IsDigit) && !IsGap(word) && !ToNumber(word);
+  return !word.empty() && std::ranges::none_of(word, IsDigit) && !IsEmptyMark(word) &&
+         !ToNumber(word);
+}
+
+std::string WithPlainSigns(std::string_view text) {
+  constexpr std::pair<std::string_view, char> kSigns[] = {
+      {"\u2212", '-'}, {"\u00A0", ' '}, {"\u2007", ' '}, {"\u2009", ' '}, {"\u202F", ' '}};
+  std::string plain;
+  size_t begin = 0;
+  for (size_t at = 0; at < text.size();) {
+    const std::string_view rest = text.substr(at);
+    // The blank that does not break, alone in Latin-1.
+    const bool is_latin =
+        rest.front() == '\xA0' && (at == 0 || static_cast<unsigned char>(text[at - 1]) < 0x80U);
+    const auto* const sign = std::ranges::find_if(
+        kSigns, [&](const auto& entry) { return rest.starts_with(entry.first); });
+    if (!is_latin && sign == std::end(kSigns)) {
+      ++at;
+      continue;
+    }
+    plain += text.substr(begin, at - begin);
+    plain += is_latin ? ' ' : sign->second;
+    at += is_latin ? 1 : sign->first.size();
+    begin = at;
+  }
+  return plain.append(text.substr(begin));
+}
+
+bool HasOddSigns(std::string_view text) {
+  for (const std::string_view sign : {"\xE2", "\xA0"}) {
+    if (text.find(sign) != std::string_view::npos) return true;
+  }
+  return false;
 }
 
 }  // namespace trilobe

@@ -23,11 +23,19 @@ std::optional<double> OddNumber(std::string_view cell);
 // Reason why a cell holds no number, and advice.
 std::string WhyNoNumber(std::string_view cell);
 
+// Whether a line holds but separators, as a spreadsheet writes rows without cells.
+bool IsEmptyRow(std::string_view line);
+
 // Whether a line is but a rule of a table of characters: "|---|:--:|", "+----+----+".
 bool IsRule(std::string_view line);
 
 // Whether a line is text, and not a row that lacks something: its first word has no digit.
 bool IsText(std::string_view line);
+
+// The text with "-" for the minus sign of print (U+2212), and blanks for those of other widths.
+std::string WithPlainSigns(std::string_view text);
+// Whether there may be any; quick.
+bool HasOddSigns(std::string_view text);
 
 }  // namespace trilobe
 

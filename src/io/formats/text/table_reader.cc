@@ -190,7 +190,7 @@ class TableReader {
       return true;
     }
     if (line.starts_with('[') && line.ends_with(']')) return true;  // the name of a section
-    if (WithoutComment(line).empty() || IsRule(line)) return true;
+    if (WithoutComment(line).empty() || IsRule(line) || IsEmptyRow(line)) return true;
     std::vector<std::string_view> cells;
     SplitRow(line, head_.separator, &cells);
     if (cells.size() > head_.names.size() && cells.back().empty()) cells.pop_back();
@@ -371,6 +371,10 @@ std::string TableReader::Note(bool turned) const {
 Measurement ReadTextTable(std::string_view text, const std::string& source,
                           const SourceOptions& options) {
   CheckLines(text, source);
+  if (HasOddSigns(text)) {
+    const std::string plain = WithPlainSigns(text);
+    if (plain != text) return ReadTextTable(plain, source, options);
+  }
   const bool named = NamesAxes(options.columns);
   if (!named && (!options.columns.empty() || !HasAxes(text))) {
     return TableReader(text, source, options).Read();

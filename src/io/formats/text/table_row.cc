@@ -49,7 +49,7 @@ bool TableRow::TakeNumbers(std::string_view line) {
 // The same of any row; false for a line of text.
 bool TableRow::TakeCells(const TextLines& lines) {
   const std::string_view line = WithoutComment(lines.line());
-  if (line.empty() || IsRule(line)) return false;
+  if (line.empty() || IsRule(line) || IsEmptyRow(line)) return false;
   if (TakeNumbers(line)) return true;
   SplitRow(line, separator_, &cells_);
   const std::vector<TableColumn>& columns = layout_->columns;

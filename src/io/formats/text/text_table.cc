@@ -309,10 +309,18 @@ void GoToRows(TableHead* head) {
            (next.line().starts_with('"') || cells[0] == "1" || cells[0] == "0");
   };
   if (has_row_names()) names.insert(names.begin(), "");
+  // "20;0,5" has two cells by its comma, too, and these are no numbers.
+  const auto fits = [&](char separator) {
+    return count(separator) == names.size() &&
+           std::ranges::all_of(cells, [](auto cell) { return IsNumber(cell) || IsGap(cell); });
+  };
+  const auto other = [&](const auto& is_so) {
+    const auto* const found = std::ranges::find_if(kSeparators, is_so);
+    return found == std::end(kSeparators) ? head->separator : *found;
+  };
+  if (!fits(head->separator)) head->separator = other(fits);
   if (count(head->separator) != names.size()) {
-    const auto* const other = std::ranges::find_if(
-        kSeparators, [&](char separator) { return count(separator) == names.size(); });
-    if (other != std::end(kSeparators)) head->separator = *other;
+    head->separator = other([&](char separator) { return count(separator) == names.size(); });
   }
   const size_t n = count(head->separator);
   const bool is_units = n == names.size() && std::ranges::all_of(cells, [](std::string_view cell) {
