@@ -16,8 +16,14 @@ namespace trilobe {
 bool IsModelFile(const std::string& path) {
   if (IsMaterial(path)) return true;
   const std::string beginning = BeginningOf(path);
-  return RecogniseContent(beginning).kind == Content::Kind::kJson &&
-         RecogniseFormat(beginning) == nullptr && EndingOf(path) != ".xompt";
+  if (RecogniseContent(beginning).kind != Content::Kind::kJson) return false;
+  // Objects of other keys are read as measurements, which says what columns they lack.
+  const bool has_keys =
+      beginning.find("\":") != std::string::npos || beginning.starts_with("{\\rtf");
+  const bool is_model = beginning.find("\"format\"") != std::string::npos ||
+                        beginning.find("\"lobes\"") != std::string::npos;
+  return (is_model || !has_keys) && RecogniseFormat(beginning) == nullptr &&
+         EndingOf(path) != ".xompt";
 }
 
 ModelFile ModelOfSource(const std::string& path) {

@@ -69,7 +69,10 @@ constexpr std::array kForeign = {
     Foreign{
         "[{"sv, "", "", "a list in JSON, which is not read",
         R"(make it an object of columns, as {"theta_i": [...], "brdf": [...]}, or save it as CSV)"},
-    Foreign{"{"sv, "", ".jsonl", "a file of lines of JSON, which is not read", ""},
+    Foreign{
+        "[["sv, "", "", "a list in JSON, which is not read",
+        R"(make it an object of columns, as {"theta_i": [...], "brdf": [...]}, or save it as CSV)"},
+    Foreign{"{"sv, "}\n{", ".jsonl", "a file of lines of JSON, which is not read", ""},
     Foreign{"{"sv, "", ".ndjson", "a file of lines of JSON, which is not read", ""},
     Foreign{"\x80\2"sv, "", "", kPickle, kFromPython},
     Foreign{"\x80\3"sv, "", "", kPickle, kFromPython},
@@ -95,6 +98,9 @@ constexpr std::array kForeign = {
             "give a measurement at many pairs of directions"},
     Foreign{"mdl 1."sv, "", "", "an MDL module, which describes a material and is no measurement",
             "give the .mbsdf file that it names"},
+    Foreign{"cdf\1"sv, "", "", "a NetCDF file", ""},
+    Foreign{"cdf\2"sv, "", "", "a NetCDF file", ""},
+    Foreign{"<"sv, "</", "", "a web page or other markup", "download the file itself"},
 };
 
 std::string Lower(std::string_view text) {

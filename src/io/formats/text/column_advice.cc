@@ -1,10 +1,12 @@
 #include "io/formats/text/column_advice.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 
 #include "core/base/text.h"
 #include "io/formats/text/angle_names.h"
+#include "io/formats/text/column_words.h"
 #include "io/formats/text/columns_flag.h"
 #include "io/formats/text/value_advice.h"
 #include "trilobe/core/base/angles.h"
@@ -42,9 +44,11 @@ std::string AdviceOnCoordinates(const std::vector<TableColumn>& columns) {
   for (const TableColumn& column : columns) {
     if (column.role != ColumnRole::kOther) continue;
     const std::string key = KeyOf(column);
+    if (key == "beta" && Has(columns, "alpha")) continue;  // angles by letters
     for (const Coordinate& coordinate : kCoordinates) {
       // Checked before "beta": the distance between bars, |beta - beta0|.
-      const bool is_distance = key.find("betabeta") != std::string::npos || key.starts_with("bb0");
+      const bool is_distance = key.find("betabeta") != std::string::npos ||
+                               key.starts_with("bb0") || key.starts_with("bbo");
       const bool fits = coordinate.begin == "bb0"
                             ? is_distance
                             : !is_distance && key.starts_with(coordinate.begin);
@@ -92,8 +96,43 @@ std::string AdviceOnWavenumbers(const std::vector<TableColumn>& columns) {
   return {};
 }
 
+// "BRDF at 10 deg", "BRDF at 30 deg", "BRDF at 50 deg".
+std::string AdviceOnMatrix(const std::vector<TableColumn>& columns) {
+  constexpr int kFewest = 3;
+  constexpr std::string_view kOfGloss[] = {"20", "45", "60", "75", "85"};
+  const bool has_values = std::ranges::any_of(columns, [](const TableColumn& column) {
+    return column.role >= ColumnRole::kRed && column.role <= ColumnRole::kBand;
+  });
+  if (has_values) return {};
+  std::map<std::string, int> stems;
+  bool is_gloss = true;
+  for (const TableColumn& column : columns) {
+    constexpr std::string_view kDigits = "0123456789.";
+    if (column.role != ColumnRole::kOther) continue;
+    const size_t first = column.name.find_first_of("0123456789");
+    if (first == std::string::npos) continue;
+    const size_t end = std::min(column.name.find_first_not_of(kDigits, first), column.name.size());
+    is_gloss &= IsOneOf(column.name.substr(first, end - first), kOfGloss);
+    ++stems[column.name.substr(0, first) + column.name.substr(end)];
+  }
+  const auto are_many = [](const auto& stem) {
+    const std::string plain = Plain(stem.first);
+    const bool is_brdf = plain.starts_with("brdf") || plain.starts_with("bsdf");
+    return stem.second >= (is_brdf ? kFewest - 1 : kFewest);
+  };
+  if (std::ranges::none_of(stems, are_many)) return {};
+  if (is_gloss) {
+    return "columns of 20, 60 and 85 deg seem to be of gloss, and no BRDF; one is measured at many "
+           "pairs of directions";
+  }
+  return "no column theta_i; --columns=theta_o/theta_i says that a row is a theta_o and a column a "
+         "theta_i, of those in its name";
+}
+
 std::string AdviceOnAngles(const std::vector<TableColumn>& columns) {
-  for (const std::string_view vector : {"wix", "ix", "lx", "inx", "lightx", "xi"}) {
+  if (std::string advice = AdviceOnTransmission(columns); !advice.empty()) return advice;
+  for (const std::string_view vector :
+       {"wix", "ix", "lx", "inx", "lightx", "xi", "kx", "kxin", "kxi", "kix", "vx"}) {
     if (!Has(columns, vector)) continue;
     return "directions are vectors; make them angles, or give them to trilobe.Measurement(wi, wo, "
            "rho) in Python";
@@ -108,17 +147,11 @@ std::string AdviceOnAngles(const std::vector<TableColumn>& columns) {
            "many pairs of directions: make a table with a column of each wavelength, as 550nm, "
            "beside theta_i and theta_o";
   }
-  // "BRDF at 10 deg", "BRDF at 30 deg"
-  const auto has_number = [](const TableColumn& column) {
-    return column.role == ColumnRole::kOther &&
-           column.name.find_first_of("0123456789") != std::string::npos;
-  };
-  if (std::ranges::count_if(columns, has_number) > 1) {
-    return "no column theta_i; --columns=theta_o/theta_i says that a row is a theta_o and a column "
-           "a theta_i, of those in its name";
-  }
-  const bool half = Has(columns, "thetah") || Has(columns, "thetahalf");
-  if (half && (Has(columns, "d") || Has(columns, "ndf"))) {
+  if (std::string advice = AdviceOnMatrix(columns); !advice.empty()) return advice;
+  const bool half = Has(columns, "thetah") || Has(columns, "thetahalf") || Has(columns, "thetam") ||
+                    Has(columns, "halfangle");
+  const bool is_ndf = Has(columns, "ndf") || (half && (Has(columns, "d") || Has(columns, "dh")));
+  if (is_ndf && !has_role(ColumnRole::kValue)) {
     return "this is a distribution of normals D(theta_h), of a model's tables; a BRDF is measured "
            "at many pairs of directions";
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/formats/text/column_words.h"
+#include "io/formats/text/columns_flag.h"
 #include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/printable.h"
 
@@ -23,15 +24,15 @@ std::string Quoted(std::string_view name) {
 
 class ColumnLayouter {
  public:
-  ColumnLayouter(const TextLines& lines, const std::vector<TableColumn>& columns)
-      : lines_(lines), layout_{.columns = columns}, is_read_(columns.size()) {}
+  ColumnLayouter(const TextLines& lines, const std::vector<TableColumn>& columns,
+                 const FirstRows& rows)
+      : lines_(lines), rows_(rows), layout_{.columns = columns}, is_read_(columns.size()) {}
 
   ColumnLayout Lay(const GivenAngles& given, bool prefers_bands) {
     LayAngles(given);
     LayValues(prefers_bands, /*may_lack=*/given.values);
     for (size_t k = 0; k < is_read_.size(); ++k) {
-      const bool is_empty = layout_.columns[k].name.empty();
-      if (!is_read_[k] && !is_empty) layout_.left_out.push_back(k);
+      if (!is_read_[k]) layout_.left_out.push_back(k);
     }
     return std::move(layout_);
   }
@@ -56,9 +57,11 @@ class ColumnLayouter {
   }
 
   [[noreturn]] void FailAsTheSame(size_t one, size_t other) const {
-    lines_.Fail("the header has " + std::to_string(layout_.columns.size()) + " columns, and '" +
-                    layout_.columns[one].name + "' and '" + layout_.columns[other].name +
-                    "' say the same; --columns=" + kUsualColumns +
+    const std::string names = std::to_string(layout_.columns.size()) + " columns, and '" +
+                              layout_.columns[one].name + "' and '" + layout_.columns[other].name;
+    const bool is_value = layout_.columns[one].role >= Role::kRed;
+    lines_.Fail("the header has " + names + "' say the same; " +
+                    ColumnsFlag(layout_.columns, is_value ? one : ValueColumn()) +
                     " names those to read, - the others",
                 ErrorKind::kConflict, layout_.columns[one].name, layout_.columns[other].name);
   }
@@ -67,24 +70,84 @@ class ColumnLayouter {
     lines_.Fail("the header has no column " + column + advice, ErrorKind::kMissing, column);
   }
 
+  // The columns that no name tells, and that hold numbers.
+  std::vector<std::string> Unread() const {
+    std::vector<std::string> names;
+    for (size_t k = 0; k < layout_.columns.size(); ++k) {
+      const TableColumn& column = layout_.columns[k];
+      const bool is_unknown = column.role == Role::kOther && !column.is_by_flag;
+      const bool can_be_named =
+          !column.name.empty() && column.name.find_first_of(",=") == std::string::npos;
+      if (is_unknown && can_be_named && rows_.IsOfNumbers(k)) names.push_back(column.name);
+    }
+    return names;
+  }
+
+  static std::string Either(const std::vector<std::string>& names) {
+    constexpr size_t kMost = 5;
+    std::string text;
+    for (size_t k = 0; k < std::min(names.size(), kMost); ++k) {
+      text += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + Quoted(names[k]);
+    }
+    return text;
+  }
+
+  // The last column that may hold values.
+  size_t ValueColumn() const {
+    for (size_t k = layout_.columns.size(); k-- > 0;) {
+      const Role role = layout_.columns[k].role;
+      if ((role >= Role::kRed && role <= Role::kBand) || role == Role::kOther) return k;
+    }
+    return layout_.columns.size();
+  }
+
+  bool HasValues() const {
+    return std::ranges::any_of(layout_.columns, [](const TableColumn& column) {
+      return column.role >= Role::kRed && column.role <= Role::kBand;
+    });
+  }
+
+  [[noreturn]] void FailWithoutTheta(const GivenAngles& given) const {
+    const bool lacks_i = !layout_.angles[0] && !given.theta_i;
+    const bool lacks_o = !given.theta_o && !layout_.angles[2] && All(Role::kTheta).empty() &&
+                         All(Role::kFromMirror).empty();
+    const std::string column = lacks_i ? "theta_i" : "theta_o";
+    const std::vector<std::string> unread = Unread();
+    if (unread.empty()) {
+      FailWithout(column, "; --" + column + "=DEGREES gives it, and --columns=" +
+                              ExampleColumns(layout_.columns.size()) + " names columns");
+    }
+    std::string flag = "--columns=";
+    size_t next = 0;
+    const auto name = [&](bool lacks, const char* what) {
+      if (!lacks || next == unread.size()) return;
+      flag += (flag.ends_with("--columns=") ? "" : ",") + std::string(what) + "=" + unread[next];
+      ++next;
+    };
+    name(lacks_i, "theta_i");
+    name(lacks_o, "theta_o");
+    if (!HasValues() && next < unread.size()) {
+      next = unread.size() - 1;
+      name(true, "f");
+    }
+    FailWithout(column, "; if it is " + Either(unread) + ", type " + Quotable(flag) +
+                            (lacks_o ? ", or from_mirror=NAME if it is counted from the mirror "
+                                       "direction"
+                                     : ""));
+  }
+
   void LayAngles(const GivenAngles& given) {
     constexpr Role kRoles[kAngles] = {Role::kThetaI, Role::kPhiI, Role::kThetaO, Role::kPhiO};
     for (int k = 0; k < kAngles; ++k) layout_.angles[k] = One(kRoles[k]);
     auto& [theta_i, phi_i, theta_o, phi_o] = layout_.angles;
     if (!theta_i && !given.theta_i && given.theta_o) theta_i = One(Role::kTheta);
-    if (!theta_i && !given.theta_i) {
-      FailWithout("theta_i", std::string("; --theta_i=DEGREES gives it, and --columns=") +
-                                 kUsualColumns + " names columns");
-    }
+    if (!theta_i && !given.theta_i) FailWithoutTheta(given);
     if (!theta_o && !given.theta_o) theta_o = One(Role::kTheta);
     if (!theta_o && !given.theta_o) {
       theta_o = One(Role::kFromMirror);
       layout_.from_mirror = theta_o.has_value();
     }
-    if (!theta_o && !given.theta_o) {
-      FailWithout("theta_o", std::string("; --theta_o=DEGREES gives it, and --columns=") +
-                                 kUsualColumns + " names columns");
-    }
+    if (!theta_o && !given.theta_o) FailWithoutTheta(given);
     if (!phi_o && !phi_i) phi_o = One(Role::kPhi);
     if (!phi_o && !phi_i && !layout_.from_mirror) layout_.phase = One(Role::kPhase);
     if (layout_.phase) UnitOf(layout_.columns[*layout_.phase]);  // throws for others
@@ -133,9 +196,14 @@ class ColumnLayouter {
       layout_.values = {*other};
       is_read_[*other] = true;
     } else if (!may_lack) {
-      FailWithout("of values",
-                  std::string(", as r, g, b, or brdf, or wavelengths as 550nm; --columns=") +
-                      kUsualColumns + " names columns, - those to leave out");
+      const std::vector<std::string> unread = Unread();
+      const std::string begin = ", as r, g, b, or brdf, or wavelengths as 550nm; ";
+      if (unread.empty()) {
+        FailWithout("of values", begin + "--columns=" + ExampleColumns(layout_.columns.size()) +
+                                     " names columns, - those to leave out");
+      }
+      FailWithout("of values", begin + "if " + Either(unread) + " holds f in 1/sr, type " +
+                                   Quotable("--columns=f=" + unread.back()));
     }
     for (const size_t k : layout_.values) {
       const TableColumn& column = layout_.columns[k];
@@ -169,6 +237,7 @@ class ColumnLayouter {
   }
 
   const TextLines& lines_;
+  const FirstRows& rows_;
   ColumnLayout layout_;
   std::vector<bool> is_read_;
 };
@@ -223,8 +292,8 @@ bool MayBeFactor(const ColumnLayout& layout) {
 }
 
 ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
-                      const GivenAngles& given, bool prefers_bands) {
-  return ColumnLayouter(lines, columns).Lay(given, prefers_bands);
+                      const GivenAngles& given, const FirstRows& rows, bool prefers_bands) {
+  return ColumnLayouter(lines, columns, rows).Lay(given, prefers_bands);
 }
 
 }  // namespace trilobe

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/files/text_lines.h"
+#include "io/formats/text/first_rows.h"
 #include "io/formats/text/table_columns.h"
 
 namespace trilobe {
@@ -52,9 +53,9 @@ bool MayBeFactor(const ColumnLayout& layout);
 // The layout of columns that the line of `lines` names; columns of wavelengths before others of
 // values if `prefers_bands`. Angles may be missing if they are given, phi_i if it is 0, and both
 // azimuths in measurements in the plane of incidence. Throws Error, with the line, if the columns
-// do not tell the angles or values.
+// do not tell the angles or values, and names those of numbers that may hold them.
 ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
-                      const GivenAngles& given, bool prefers_bands = false);
+                      const GivenAngles& given, const FirstRows& rows, bool prefers_bands);
 
 }  // namespace trilobe
 

@@ -1,6 +1,7 @@
 #include "io/formats/text/columns_flag.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "io/formats/text/column_words.h"
 
@@ -57,6 +58,18 @@ std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,
   std::vector<std::string> words(columns.size());
   if (as_f < words.size()) words[as_f] = value;
   return ColumnsFlagWith(columns, words);
+}
+
+std::string ExampleColumns(size_t count) {
+  constexpr const char* kExamples[] = {"theta_o,f", "theta_i,theta_o,f", "theta_i,theta_o,phi_o,f",
+                                       "theta_i,phi_i,theta_o,phi_o,f",
+                                       "theta_i,theta_o,phi_o,r,g,b"};
+  constexpr size_t kFewest = 2;
+  if (count >= kFewest && count - kFewest < std::size(kExamples)) return kExamples[count - kFewest];
+  constexpr size_t kUsual = std::size(kUsualNames), kMostShown = 20;
+  std::string text = kUsualColumns;
+  for (size_t k = kUsual; k < std::min(count, kMostShown); ++k) text += ",-";
+  return text;
 }
 
 }  // namespace trilobe

@@ -18,6 +18,9 @@ std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,
 std::string ColumnsFlagWith(const std::vector<TableColumn>& columns,
                             const std::vector<std::string>& words);
 
+// Names for so many columns, as an example: "theta_i,theta_o,f" of three.
+std::string ExampleColumns(size_t count);
+
 // A flag as a shell takes it, in quotes if it holds what a shell would change.
 std::string Quotable(const std::string& flag);
 

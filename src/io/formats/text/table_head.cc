@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/files/text_lines.h"
+#include "io/formats/text/columns_flag.h"
+#include "io/formats/text/given_angles.h"
 #include "io/formats/text/table_columns.h"
 #include "io/formats/text/table_lines.h"
 #include "trilobe/core/base/error.h"
@@ -103,6 +105,25 @@ std::string AdviceOnNumbers(TextLines lines) {
 
 }  // namespace
 
+namespace {
+
+bool IsNoHeader(std::string_view line) { return AnglesInLine(line) || line.starts_with('['); }
+
+// From the first line of a text to the last above the numbers, which may be a header of unknown
+// names, or else to the first of numbers. Stays where there are none.
+void GoToLastText(TextLines* lines) {
+  constexpr int kMostLines = 200;
+  std::optional<TextLines> last;
+  TextLines next = *lines;
+  for (int k = 0; k < kMostLines && !LooksLikeRow(next.line(), 2); ++k) {
+    if (!IsNoHeader(next.line())) last = next;
+    if (!next.Next()) return;
+  }
+  if (LooksLikeRow(next.line(), 2)) *lines = last.value_or(next);
+}
+
+}  // namespace
+
 TableHead HeadOf(std::string_view text, const std::string& source, const std::string& columns,
                  bool theta_is_given) {
   TableHead head{.lines = TextLines(text, source)};
@@ -127,6 +148,7 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
     }
     while (head.lines.line().starts_with('%') && head.lines.Next()) {
     }
+    GoToLastText(&head.lines);
     constexpr size_t kOfCuret = 206;  // a sample's number, and its value at each direction
     if (SplitCells(head.lines.line(), ' ').size() == kOfCuret) {
       head.lines.Fail(
@@ -137,7 +159,8 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
       head.lines.Fail(advice, ErrorKind::kUnsupported, "columns");
     }
     if (LooksLikeRow(head.lines.line(), 2)) {
-      head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
+      head.lines.Fail("no header row names the columns; --columns=" +
+                      ExampleColumns(NamesOfFirstLine(head.lines.line()).size()) +
                       " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
                       "columns of a matrix");
     }
@@ -189,7 +212,8 @@ std::vector<TableColumn> ColumnsOf(const TableHead& head, const TextLines& heade
     }
     if (at.size() > 1) {
       header.Fail(begin + "which the header has " + std::to_string(at.size()) +
-                      " times; name all columns in their order, as " + kUsualColumns,
+                      " times; name all columns in their order, as " +
+                      ExampleColumns(head.names.size()),
                   ErrorKind::kConflict, "columns", in_header);
     }
     if (!whats[at[0]].empty()) header.Fail(begin + "twice", ErrorKind::kConflict, "columns", what);

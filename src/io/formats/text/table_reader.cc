@@ -96,7 +96,7 @@ class TableReader {
       header_.Fail(advice, ErrorKind::kUnsupported, "columns");
     }
     CheckNames(options_.columns);
-    return LayoutOf(header_, columns, given_,
+    return LayoutOf(header_, columns, given_, rows,
                     /*prefers_bands=*/!options_.bands.empty());
   }
 

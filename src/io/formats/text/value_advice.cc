@@ -68,6 +68,7 @@ constexpr KnownColumn kKnownValues[] = {
     {"radiance", kReading, ""},
     {"luminance", kReading, ""},
     {"btdf", "transmitted light, which is not read; the BRDF is what is reflected", ""},
+    {"transmittance", "transmitted light, which is not read; the BRDF is what is reflected", ""},
     {"dhr", "the reflectance of a hemisphere; a BRDF is by pairs of directions", ""},
     {"brdfs", kPolarised, ""},
     {"brdfp", kPolarised, ""},
@@ -153,13 +154,14 @@ std::string AdviceOnScale(const std::vector<TableColumn>& columns) {
 
 std::string AdviceOnTransmission(const std::vector<TableColumn>& columns) {
   for (size_t k = 0; k < columns.size(); ++k) {
-    if (KeyOf(columns[k]) != "btdf") continue;
+    if (columns[k].role != ColumnRole::kOther || !KeyOf(columns[k]).starts_with("btdf")) continue;
     return Described(columns, k, *std::ranges::find(kKnownValues, "btdf", &KnownColumn::key));
   }
   return {};
 }
 
 std::string AdviceOnValues(const std::vector<TableColumn>& columns, const FirstRows& rows) {
+  if (std::string advice = AdviceOnTransmission(columns); !advice.empty()) return advice;
   for (size_t k = 0; k < columns.size(); ++k) {
     if (columns[k].role != ColumnRole::kOther) continue;
     const std::string key = KeyOf(columns[k]);
