@@ -30,6 +30,11 @@ TEST(TableAdvice, ColumnsThatCouldBeItAreNamed) {
               HasSubstr("type --columns=theta_i=invalshoek,theta_o=uitvalshoek"));
   EXPECT_THAT(Problem("theta_i,theta_o,FDRB (sr-1)\n30,10,1\n"),
               HasSubstr("'--columns=f=FDRB (sr-1)'"));
+  EXPECT_THAT(Problem("detector angle,Intensity\n10,1\n20,2\n"), Not(HasSubstr("=Intensity")));
+  EXPECT_THAT(Problem("theta_i,phi,brdf_data_1D\n10,0,1\n20,0,2\n"),
+              HasSubstr("--theta_o=DEGREES gives it"));
+  EXPECT_THAT(Problem("alpha,beta,gamma,BRDF\n10,0,1,1\n"),
+              HasSubstr("--columns=theta_i=alpha,theta_o=beta"));
   // What holds no numbers cannot be it.
   EXPECT_THAT(Problem("theta_i,operator,BRDF\n30,J. Smith,1\n"),
               HasSubstr("--theta_o=DEGREES gives it, and --columns=theta_i,theta_o,f names"));
@@ -47,6 +52,11 @@ TEST(TableAdvice, ALineAboveTheRowsIsTheHeader) {
 TEST(TableAdvice, AnExampleHasAsManyColumns) {
   EXPECT_THAT(Problem("30,10,0.5\n30,20,0.5\n"), HasSubstr("--columns=theta_i,theta_o,f names"));
   EXPECT_THAT(Problem("30;0;10;0;0.5\n30;0;20;0;0.5\n"),
+              HasSubstr("--columns=theta_i,phi_i,theta_o,phi_o,f names"));
+}
+
+TEST(TableAdvice, ALineOfCountsIsNoExample) {
+  EXPECT_THAT(Problem("52 5 -1.000\n30 0 10 0 0.5\n30 0 20 0 0.5\n"),
               HasSubstr("--columns=theta_i,phi_i,theta_o,phi_o,f names"));
 }
 

@@ -6,6 +6,7 @@
 
 #include "io/formats/text/column_words.h"
 #include "io/formats/text/columns_flag.h"
+#include "io/formats/text/value_advice.h"
 #include "trilobe/core/base/channels.h"
 #include "trilobe/core/base/printable.h"
 
@@ -112,7 +113,8 @@ class ColumnLayouter {
     const bool lacks_o = !given.theta_o && !layout_.angles[2] && All(Role::kTheta).empty() &&
                          All(Role::kFromMirror).empty();
     const std::string column = lacks_i ? "theta_i" : "theta_o";
-    const std::vector<std::string> unread = Unread();
+    std::vector<std::string> unread = Unread();
+    std::erase_if(unread, [](const std::string& name) { return IsKnownValue(ColumnNamed(name)); });
     if (unread.empty()) {
       FailWithout(column, "; --" + column + "=DEGREES gives it, and --columns=" +
                               ExampleColumns(layout_.columns.size()) + " names columns");

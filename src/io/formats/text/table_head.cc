@@ -109,6 +109,13 @@ namespace {
 
 bool IsNoHeader(std::string_view line) { return AnglesInLine(line) || line.starts_with('['); }
 
+// The number of cells of the first rows, of which one may be a line of counts.
+size_t CellsOfRows(TextLines lines) {
+  size_t cells = NamesOfFirstLine(lines.line()).size();
+  if (lines.Next()) cells = std::max(cells, NamesOfFirstLine(lines.line()).size());
+  return cells;
+}
+
 // From the first line of a text to the last above the numbers, which may be a header of unknown
 // names, or else to the first of numbers. Stays where there are none.
 void GoToLastText(TextLines* lines) {
@@ -159,10 +166,10 @@ TableHead HeadOf(std::string_view text, const std::string& source, const std::st
       head.lines.Fail(advice, ErrorKind::kUnsupported, "columns");
     }
     if (LooksLikeRow(head.lines.line(), 2)) {
-      head.lines.Fail("no header row names the columns; --columns=" +
-                      ExampleColumns(NamesOfFirstLine(head.lines.line()).size()) +
-                      " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
-                      "columns of a matrix");
+      head.lines.Fail(
+          "no header row names the columns; --columns=" + ExampleColumns(CellsOfRows(head.lines)) +
+          " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
+          "columns of a matrix");
     }
     head.names = NamesOfFirstLine(head.lines.line());
   }

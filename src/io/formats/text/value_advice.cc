@@ -152,6 +152,14 @@ std::string AdviceOnScale(const std::vector<TableColumn>& columns) {
   return {};
 }
 
+bool IsKnownValue(const TableColumn& column) {
+  const std::string key = KeyOf(column);
+  if (key.starts_with("brdf") || key.starts_with("bsdf")) return true;
+  if (key == "beta") return false;  // an angle, too
+  return std::ranges::find(kKnownValues, key, &KnownColumn::key) != std::end(kKnownValues) ||
+         ProductNamed(column.name).has_value();
+}
+
 std::string AdviceOnTransmission(const std::vector<TableColumn>& columns) {
   for (size_t k = 0; k < columns.size(); ++k) {
     if (columns[k].role != ColumnRole::kOther || !KeyOf(columns[k]).starts_with("btdf")) continue;

@@ -15,6 +15,9 @@ std::string AdviceOnScale(const std::vector<TableColumn>& columns);
 // Advice on columns without one of values: which holds f times something, or what else; or "".
 std::string AdviceOnValues(const std::vector<TableColumn>& columns, const FirstRows& rows);
 
+// Whether the name of a column is one of values, "brdf_data", or of those that are no BRDF.
+bool IsKnownValue(const TableColumn& column);
+
 // The column of transmitted light, if there is one and none of values, or "".
 std::string AdviceOnTransmission(const std::vector<TableColumn>& columns);
 
