@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -23,6 +24,7 @@ namespace {
 
 constexpr double kSameValue = 1e-6;  // relative
 constexpr int kMostSamples = 20000;  // that a symptom looks at
+constexpr size_t kFewestDirections = 3;
 
 // --- incidences ---
 
@@ -60,7 +62,8 @@ void KeepDarkestOfSame(std::vector<Seen>* seen) {
   seen->erase(same.begin(), same.end());
 }
 
-double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbers) {
+// Nothing of fewer than three directions.
+std::optional<double> ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbers) {
   constexpr int kPoints = 3000;
   static const std::vector<Direction> points = CosinePoints(kPoints);
   std::vector<Seen> seen;
@@ -71,6 +74,7 @@ double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbe
     seen.push_back({wo, Mean(samples.rho[j]), 0});
   }
   KeepDarkestOfSame(&seen);
+  if (seen.size() < kFewestDirections) return std::nullopt;
   for (Seen& one : seen) {
     double nearest = DegreesToRadians(10);
     for (const Seen& other : seen) {
@@ -276,11 +280,9 @@ std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples) {
 }
 
 std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
-  constexpr size_t kFewest = 3;
   constexpr int kMost = 1000;  // samples of an incidence
   std::vector<ReflectedAtLeast> reflected;
   for (const auto& [step, all] : ByIncidence(samples)) {
-    if (all.size() < kFewest) continue;
     std::vector<int> numbers;
     const size_t stride = 1 + all.size() / kMost;
     for (size_t k = 0; k < all.size(); k += stride) numbers.push_back(all[k]);
@@ -288,7 +290,8 @@ std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
     for (const int j : numbers) {
       theta_i += samples.directions[j].theta_i / static_cast<double>(numbers.size());
     }
-    reflected.push_back({theta_i, ReflectedAlbedo(samples, numbers)});
+    const std::optional<double> albedo = ReflectedAlbedo(samples, numbers);
+    if (albedo) reflected.push_back({theta_i, *albedo});
   }
   return reflected;
 }

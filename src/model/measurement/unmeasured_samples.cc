@@ -121,9 +121,9 @@ bool AreZerosApart(const BrdfSamples& samples) {
 }  // namespace
 
 std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
-  constexpr int kMostOf = 5;
-  const auto zeros = std::ranges::count_if(samples.rho, IsZero);
-  if (zeros == 0) return {};
+  constexpr int kMostOf = 5, kFewestIn = 500;
+  const auto zeros = static_cast<size_t>(std::ranges::count_if(samples.rho, IsZero));
+  if (zeros == 0 || kFewestIn * zeros < samples.rho.size()) return {};
   if (AreZerosApart(samples)) {
     std::vector<int> all;
     for (int j = 0; j < samples.size(); ++j) {
@@ -131,7 +131,7 @@ std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
     }
     return all;
   }
-  if (kMostOf * zeros > samples.size()) return {};
+  if (kMostOf * zeros > samples.rho.size()) return {};
   std::vector<int> gaps = ZerosInShadow(samples);
   for (const auto& [light, numbers] : ByLight(samples)) {
     std::vector<Lit> lit;
@@ -152,7 +152,6 @@ std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
   }
   std::ranges::sort(gaps);
   gaps.erase(std::unique(gaps.begin(), gaps.end()), gaps.end());
-  constexpr size_t kFewestIn = 500;
   if (kFewestIn * gaps.size() < samples.rho.size()) gaps.clear();
   return gaps;
 }
