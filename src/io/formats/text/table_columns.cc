@@ -222,8 +222,8 @@ namespace {
 constexpr std::array<std::string_view, 4> kPolarisations[] = {
     {"ss", "sp", "ps", "pp"}, {"hh", "hv", "vh", "vv"}, {"s", "p", "", ""}, {"te", "tm", "", ""}};
 
-// The name of a column but for case, punctuation and units of angles.
-std::string KeyOf(std::string_view name) {
+// By which IsCalled compares.
+std::string CalledKey(std::string_view name) {
   std::string plain = Plain(name);
   TakeBracket(&plain);
   std::string key = LettersAndDigits(plain);
@@ -231,29 +231,27 @@ std::string KeyOf(std::string_view name) {
   return key;
 }
 
-// Marks "f_ss", "f_sp", "f_ps" and "f_pp", or "BRDF_s" and "BRDF_p", beside angles, if nothing else
-// is a value.
-void MarkPolarised(std::vector<TableColumn>* columns) {
-  const auto has = [&](Role first, Role last) {
-    return std::ranges::any_of(*columns, [&](const TableColumn& column) {
-      return column.role >= first && column.role <= last;
-    });
+// The first column of each key: a line of text may have a hundred thousand cells.
+using ColumnsByKey = std::map<std::string, size_t, std::less<>>;
+
+// Marks "f_ss", "f_sp", "f_ps" and "f_pp", or "BRDF_s" and "BRDF_p", if nothing else is a value.
+void MarkPolarised(const ColumnsByKey& by_key, std::vector<TableColumn>* columns) {
+  const auto is_value = [](const TableColumn& column) {
+    return column.role >= Role::kRed && column.role <= Role::kBand;
   };
-  // Most lines that are tried for a header have no angle.
-  if (!has(Role::kThetaI, Role::kPhiO) || has(Role::kRed, Role::kBand)) return;
-  std::map<std::string, TableColumn*> others;
-  for (TableColumn& column : *columns) {
-    if (column.role == Role::kOther) others.emplace(KeyOf(column.name), &column);
-  }
-  std::vector<std::string> prefixes(std::begin(kValues), std::end(kValues));
-  prefixes.insert(prefixes.end(), {"r", ""});
+  if (std::ranges::any_of(*columns, is_value)) return;
   for (const auto& set : kPolarisations) {
-    for (const std::string& prefix : prefixes) {
-      if (prefix.empty() && set[0].size() == 1) continue;  // "s" and "p" may be anything
+    std::vector<std::string_view> prefixes(std::begin(kValues), std::end(kValues));
+    prefixes.emplace_back("r");
+    if (set[0].size() > 1) prefixes.emplace_back("");
+    for (const std::string_view prefix : prefixes) {
       std::vector<TableColumn*> found;
       for (const std::string_view polarisation : set) {
-        const auto at = others.find(prefix + std::string(polarisation));
-        if (!polarisation.empty() && at != others.end()) found.push_back(at->second);
+        if (polarisation.empty()) continue;
+        const auto at = by_key.find(std::string(prefix).append(polarisation));
+        if (at == by_key.end()) continue;
+        TableColumn& column = (*columns)[at->second];
+        if (column.role == Role::kOther) found.push_back(&column);
       }
       if (found.size() != static_cast<size_t>(4 - std::ranges::count(set, ""))) continue;
       for (TableColumn* const column : found) {
@@ -266,14 +264,11 @@ void MarkPolarised(std::vector<TableColumn>* columns) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // Names that are known beside one another.
 class NamedTogether {
  public:
-  explicit NamedTogether(std::vector<TableColumn>* columns) : columns_(*columns) {}
+  NamedTogether(const ColumnsByKey& by_key, std::vector<TableColumn>* columns)
+      : by_key_(by_key), columns_(*columns) {}
 
   void Mark() {
     if (HasTheta()) return MarkBands();
@@ -292,9 +287,8 @@ class NamedTogether {
 
  private:
   TableColumn* Called(std::string_view name) {
-    const auto found = std::ranges::find_if(
-        columns_, [&](const TableColumn& column) { return IsCalled(column.name, name); });
-    return found == columns_.end() ? nullptr : &*found;
+    const auto found = by_key_.find(name);
+    return found == by_key_.end() ? nullptr : &columns_[found->second];
   }
 
   bool Has(Role role) const {
@@ -324,6 +318,7 @@ class NamedTogether {
     }
   }
 
+  const ColumnsByKey& by_key_;
   std::vector<TableColumn>& columns_;
 };
 
@@ -332,13 +327,15 @@ class NamedTogether {
 std::vector<TableColumn> ColumnsNamed(const std::vector<std::string>& names) {
   std::vector<TableColumn> columns;
   for (const std::string& name : names) columns.push_back(ColumnNamed(name));
-  MarkPolarised(&columns);
-  NamedTogether(&columns).Mark();
+  ColumnsByKey by_key;
+  for (size_t k = 0; k < names.size(); ++k) by_key.try_emplace(CalledKey(names[k]), k);
+  MarkPolarised(by_key, &columns);
+  NamedTogether(by_key, &columns).Mark();
   return columns;
 }
 
 bool IsCalled(std::string_view name, std::string_view usual) {
-  return KeyOf(name) == LettersAndDigits(usual);
+  return CalledKey(name) == LettersAndDigits(usual);
 }
 
 std::optional<double> RadiansIn(std::string_view unit) {
