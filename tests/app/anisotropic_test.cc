@@ -189,7 +189,7 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
   const ProgramResult fit =
       RunProgram({"fit", "--scene=" + In("scene.json"), quick, cache, "--out=" + In("scene")});
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(fit.out, HasSubstr("kept:     isotropic instead of anisotropic"));
+  EXPECT_THAT(fit.out, HasSubstr("not taken: isotropic instead of anisotropic"));
   EXPECT_THAT(fit.out, HasSubstr("note:     isotropic: turned about its normal"));
   const json plan = Parse(Contents(In("scene/plan.json")));
   for (const json& material : plan["materials"]) {

@@ -161,7 +161,7 @@ TEST(Messages, OfMeasurements) {
        [] { Read("x.csv", kHeader + "-190,2,3,4,5,6,7\n"); }},
       {ErrorKind::kFormat,
        "chrome.binary: the header says 0 x 0 x 0 bins in a file of 12 bytes; a MERL file has 90 x "
-       "90 x 180 bins",
+       "90 x 180 bins, or others with 8 or 4 bytes for each and channel",
        [] { ParseMerl(std::string(12, '\0'), "chrome.binary"); }},
       {ErrorKind::kUnknown,
        "unknown synthetic material 'cheese'; known: plastic, car-paint, copper, aluminium, chrome, "
