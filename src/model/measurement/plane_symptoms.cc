@@ -30,9 +30,10 @@ class PlaneScan {
   void Sort() {
     constexpr double kSame = 1e-5;
     std::ranges::sort(values_);
-    const auto same = std::ranges::unique(
-        values_, [](const auto& a, const auto& b) { return std::abs(a.first - b.first) < kSame; });
-    values_.erase(same.begin(), same.end());
+    const auto is_same = [](const auto& a, const auto& b) {
+      return std::abs(a.first - b.first) < kSame;
+    };
+    values_.erase(std::unique(values_.begin(), values_.end(), is_same), values_.end());
   }
   double theta_i() const { return theta_i_; }
   size_t size() const { return values_.size(); }

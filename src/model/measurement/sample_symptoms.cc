@@ -58,8 +58,8 @@ void KeepDarkestOfSame(std::vector<Seen>* seen) {
                       std::llround(one.wo[2] / kSame));
   };
   std::ranges::sort(*seen, {}, [&](const Seen& one) { return std::pair(key(one), one.rho); });
-  const auto same = std::ranges::unique(*seen, {}, key);
-  seen->erase(same.begin(), same.end());
+  const auto is_same = [&](const Seen& a, const Seen& b) { return key(a) == key(b); };
+  seen->erase(std::unique(seen->begin(), seen->end(), is_same), seen->end());
 }
 
 // Nothing of fewer than three directions.
