@@ -9,9 +9,9 @@
 
 #include "model/measurement/bad_readings.h"
 #include "model/measurement/counter_random.h"
+#include "model/measurement/largest_value.h"
 #include "model/measurement/own_shadow.h"
 #include "model/measurement/sample_density.h"
-#include "model/measurement/sample_symptoms.h"
 #include "model/measurement/unmeasured_samples.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"

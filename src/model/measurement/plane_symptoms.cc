@@ -18,6 +18,8 @@
 namespace trilobe {
 namespace {
 
+constexpr double kSameInPlane = 1e-5;  // [rad]
+
 // A scan of the plane of incidence: mean values by angle from the normal [rad], above 0 on the side
 // of the mirror direction.
 class PlaneScan {
@@ -28,10 +30,9 @@ class PlaneScan {
   // In the order of the angles, of which each counts once, by the darkest: the normal is measured
   // at each azimuth.
   void Sort() {
-    constexpr double kSame = 1e-5;
     std::ranges::sort(values_);
     const auto is_same = [](const auto& a, const auto& b) {
-      return std::abs(a.first - b.first) < kSame;
+      return std::abs(a.first - b.first) < kSameInPlane;
     };
     values_.erase(std::unique(values_.begin(), values_.end(), is_same), values_.end());
   }
