@@ -173,9 +173,9 @@ double MedianOverPairs(const std::vector<ExchangedSamples>& pairs, const Number&
 }  // namespace
 
 CosineSymptom CosineOf(const BrdfSamples& samples) {
-  constexpr size_t kFewestPairs = 20;
+  constexpr size_t kFewestOfSamples = 20;
   const std::vector<ExchangedSamples> pairs = ExchangedSamplesOf(samples);
-  if (pairs.size() < kFewestPairs) return {};
+  if (pairs.size() < kFewestOfSamples) return {};
   CosineSymptom symptom{
       .is_decided = true,
       .exponent = MedianOverPairs(

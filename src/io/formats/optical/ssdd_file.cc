@@ -136,8 +136,8 @@ void CheckSsddBlock(const TextLines& lines, const SsddBlock& block) {
   if (block.color_model == "spectrum" && block.wavelengths.empty()) lacks("WAVELENGTH_LIST");
   if (block.parameters == nullptr) lacks("PARAM_TYPE");
   for (const size_t k : {0, 2, 3}) {
-    if (block.lists[k].empty())
-      lacks(k == 0 ? "PARAM0_LIST" : k == 2 ? "PARAM2_LIST" : "PARAM3_LIST");
+    const char* const key = k == 0 ? "PARAM0_LIST" : k == 2 ? "PARAM2_LIST" : "PARAM3_LIST";
+    if (block.lists[k].empty()) lacks(key);
   }
   if (block.Colors() * static_cast<double>(block.Channels()) > kMostSsddColors) {
     lines.Fail("the lists make more than 100 million values", ErrorKind::kLimit, "DATA");

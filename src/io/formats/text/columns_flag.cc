@@ -17,7 +17,7 @@ std::string Quotable(const std::string& flag) {
 
 std::string KeyOf(const TableColumn& column) {
   const std::string plain = Plain(column.name);
-  return LettersAndDigits(std::string_view(plain).substr(0, plain.find_first_of("[(")));
+  return LettersAndDigits(std::string_view{plain}.substr(0, plain.find_first_of("[(")));
 }
 
 std::string ColumnsFlagWith(const std::vector<TableColumn>& columns,

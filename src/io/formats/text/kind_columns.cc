@@ -60,7 +60,7 @@ KindColumns::KindColumns(const ColumnLayout& layout, const std::vector<size_t>& 
     if (candidates_.size() < kMostColumns || HasKnownName(column)) candidates_.push_back({{k}});
     if (IsOfPolarisation(column)) of_polarisations.push_back(k);
   }
-  std::ranges::stable_partition(candidates_, [&](const Candidate& candidate) {
+  std::stable_partition(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
     return HasKnownName(layout_.columns[candidate.columns[0]]);
   });
   if (of_polarisations.size() == 2) candidates_.push_back({of_polarisations});

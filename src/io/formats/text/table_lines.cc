@@ -131,10 +131,7 @@ std::string WithPlainSigns(std::string_view text) {
 }
 
 bool HasOddSigns(std::string_view text) {
-  for (const std::string_view sign : {"\xE2", "\xA0"}) {
-    if (text.find(sign) != std::string_view::npos) return true;
-  }
-  return false;
+  return text.find('\xE2') != std::string_view::npos || text.find('\xA0') != std::string_view::npos;
 }
 
 }  // namespace trilobe
