@@ -76,8 +76,8 @@ std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorM
   FactorModel start = InitialModels().front().make(few, /*seed=*/1);
   CopyUnobservedParameters(few.coverage(), fitted, &start);
   start = FitBySolver("hybrid", few, start, stop);
-  // In the same minimum, to this share of E, the search would end where the first did, with lobes in
-  // another order.
+  // In the same minimum, to this share of E, the search would end where the first did, with lobes
+  // in another order.
   constexpr double kSame = 0.01;
   const Objective of_fit(few, fitted.spec());
   const double E = of_fit.Value(fitted);
