@@ -37,12 +37,11 @@ std::string Advice(const std::string& name) {
 }
 
 TEST(ValueNames, PiTimesFIsNamed) {
+  const std::string latin1 = std::string("Facteur de r\xE9") + "flexion";
   for (const char* const name :
        {"radiance factor", "luminance factor", "Leuchtdichtefaktor", "Strahldichtefaktor", "HDRF",
-        "HCRF", "Reflexionsfaktor", "Facteur de r\u00E9flexion",
-        "Facteur de r\xE9"
-        "flexion",
-        "beta", "pi f", "\u03C0f", "pi*BRDF", "brdf_times_pi"}) {
+        "HCRF", "Reflexionsfaktor", "Facteur de r\u00E9flexion", latin1.c_str(), "beta", "pi f",
+        "\u03C0f", "pi*BRDF", "brdf_times_pi"}) {
     EXPECT_THAT(Advice(name), HasSubstr("--columns=theta_i,theta_o,phi_o,f --scale=0.3183"))
         << name;
   }
@@ -99,10 +98,9 @@ TEST(ValueNames, WavelengthsHaveNamesAndUnits) {
                 ElementsAre(550))
         << name;
   }
-  for (const char* const name : {"wl_nm", "Wellenl\u00E4nge (nm)",
-                                 "Wellenl\xE4"
-                                 "nge [nm]",
-                                 "longueur d'onde (nm)", "lambda_nm"}) {
+  const std::string latin1 = std::string("Wellenl\xE4") + "nge [nm]";
+  for (const char* const name :
+       {"wl_nm", "Wellenl\u00E4nge (nm)", latin1.c_str(), "longueur d'onde (nm)", "lambda_nm"}) {
     EXPECT_THAT(
         Read(std::string(name) + ";theta_i;theta_o;f\n500;30;10;1\n550;30;10;1\n", {.bands = "550"})
             .samples.spectra->wavelengths,

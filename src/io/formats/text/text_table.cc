@@ -90,6 +90,8 @@ struct Names {
 std::optional<Names> NamesIn(std::string_view line, const Place& place) {
   std::optional<Names> best;
   if (line.starts_with("VARS")) return best;  // of ASTM E1392
+  // A line of numbers names no angle.
+  if (line.find_first_not_of("0123456789.,;|+-eE \t") == std::string_view::npos) return best;
   int most = 0;
   for (const char separator : kSeparators) {
     // Blanks may stand within names; several tabs, and blanks about them, between two.
