@@ -159,14 +159,7 @@ GltfBrdf::GltfBrdf(const OpenPbr& parameters)
 
 Rgb GltfBrdf::operator()(const DirectionPair& pair) const {
   if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) return {};
-  const auto turned = [&](const Direction& w) {
-    return Direction{cos_turn_ * w[0] + sin_turn_ * w[1], cos_turn_ * w[1] - sin_turn_ * w[0],
-                     w[2]};
-  };
-  const DirectionPair at = {turned(pair.wi), turned(pair.wo)};
-  Direction half = {at.wi[0] + at.wo[0], at.wi[1] + at.wo[1], at.wi[2] + at.wo[2]};
-  const double length = std::hypot(half[0], half[1], half[2]);
-  for (double& x : half) x /= length;
+  const auto [at, half] = ToTangentFrame(pair, cos_turn_, sin_turn_);
   const double rise = Fifth(1 - std::clamp(Dot(at.wi, half), 0.0, 1.0));
 
   const OpenPbr& p = parameters_;

@@ -169,6 +169,17 @@ double OpenPbrBrdf::Ggx::Value(const DirectionPair& pair, const Direction& half)
   return d / (1 + lambda(pair.wi) + lambda(pair.wo)) / (4 * pair.wi[2] * pair.wo[2]);
 }
 
+TangentFrame ToTangentFrame(const DirectionPair& pair, double cos_turn, double sin_turn) {
+  const auto turned = [&](const Direction& w) {
+    return Direction{cos_turn * w[0] + sin_turn * w[1], cos_turn * w[1] - sin_turn * w[0], w[2]};
+  };
+  const DirectionPair at = {turned(pair.wi), turned(pair.wo)};
+  Direction half = {at.wi[0] + at.wo[0], at.wi[1] + at.wo[1], at.wi[2] + at.wo[2]};
+  const double length = std::hypot(half[0], half[1], half[2]);
+  for (double& x : half) x /= length;
+  return {at, half};
+}
+
 double RoughnessThroughCoat(const OpenPbr& parameters) {
   const double base = std::pow(parameters.specular_roughness, 4);
   const double through =
@@ -197,14 +208,7 @@ OpenPbrBrdf::OpenPbrBrdf(const OpenPbr& parameters)
 
 Rgb OpenPbrBrdf::operator()(const DirectionPair& pair) const {
   if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) return {};
-  const auto turned = [&](const Direction& w) {
-    return Direction{cos_turn_ * w[0] + sin_turn_ * w[1], cos_turn_ * w[1] - sin_turn_ * w[0],
-                     w[2]};
-  };
-  const DirectionPair at = {turned(pair.wi), turned(pair.wo)};
-  Direction half = {at.wi[0] + at.wo[0], at.wi[1] + at.wo[1], at.wi[2] + at.wo[2]};
-  const double length = std::hypot(half[0], half[1], half[2]);
-  for (double& x : half) x /= length;
+  const auto [at, half] = ToTangentFrame(pair, cos_turn_, sin_turn_);
   const double cos_d = std::clamp(Dot(at.wi, half), 0.0, 1.0), cos_o = at.wo[2];
 
   // 1 + F0 (1 - E) / E, E what is reflected where F is 1.

@@ -27,6 +27,13 @@ struct OpenPbr {
   double turn = 0;  // angle of geometry_tangent, the rougher direction, from x towards y [rad]
 };
 
+// Directions in the frame of geometry_tangent, turned by OpenPbr::turn, and their half vector.
+struct TangentFrame {
+  DirectionPair at;
+  Direction half{};
+};
+TangentFrame ToTangentFrame(const DirectionPair& pair, double cos_turn, double sin_turn);
+
 // specular_roughness seen through the coat; a rough coat increases it.
 double RoughnessThroughCoat(const OpenPbr& parameters);
 

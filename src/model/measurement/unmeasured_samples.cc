@@ -102,10 +102,6 @@ std::vector<int> ZerosInShadow(const BrdfSamples& samples) {
   return is_dark ? std::vector<int>() : zeros;
 }
 
-}  // namespace
-
-namespace {
-
 // Whether 0 is far below all else that was measured, and no next level of a detector.
 bool AreZerosApart(const BrdfSamples& samples) {
   constexpr double kDark = 0.1;

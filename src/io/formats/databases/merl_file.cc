@@ -242,8 +242,9 @@ bool LooksLikeMerl(std::string_view bytes) {
 Measurement ReadMerlMeasurement(std::string_view bytes, const std::string& source,
                                 const SourceOptions& /*options*/) {
   ReadTable read = ReadLayout(bytes, source);
-  Measurement measurement{.source = source, .kind = "MERL measurement", .table = read.table};
-  if (!read.note.empty()) measurement.notes.push_back(read.note);
+  Measurement measurement{
+      .source = source, .kind = "MERL measurement", .table = std::move(read.table)};
+  if (!read.note.empty()) measurement.notes.push_back(std::move(read.note));
   return measurement;
 }
 
