@@ -36,9 +36,9 @@ FactorModel FitBySolver(const char* solver, const Objective& few, const FactorMo
 
 // Fits stretches from the default start. If highlights widen towards grazing angles, F and G of a
 // fit without stretches may cancel over many decades (docs/file-formats.md), and stretches fitted
-// from it do not recover. Nothing where that start leads to the E of the fit, so that the search would
-// end where the first did, or unless E on `few` is lower than that of `stretched`, the result from
-// the fit.
+// from it do not recover. Nothing where that start leads to the E of the fit, so that the search
+// would end where the first did, or unless E on `few` is lower than that of `stretched`, the result
+// from the fit.
 std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,
                                              const FactorModel& stretched, const StopCheck& stop);
 
