@@ -273,8 +273,21 @@ FoldedSamples Fold(int count, const SampleMaker& make, int num_threads) {
   return FoldWithPart(count, make, num_threads, /*first=*/0, &none);
 }
 
-FoldedSamples FoldWithPart(int count, const SampleMaker& make, int num_threads, int first,
+FoldedSamples FoldWithPart(int count, const SampleMaker& make_one, int num_threads, int first,
                            FoldedPart* part) {
+  // Each sample is made for its cells, and again for its weights. Few are made once.
+  constexpr int kFew = 1 << 16;  // they take some 30 MB
+  std::vector<WeightedSample> few;
+  SampleMaker make = make_one;
+  if (count <= kFew) {
+    few.resize(count);
+    constexpr int kChunk = 1024;
+    ParallelFor((count + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+      const int end = std::min((chunk + 1) * kChunk, count);
+      for (int j = chunk * kChunk; j < end; ++j) few[j] = make_one(j);
+    });
+    make = [&few](int j) { return few[j]; };
+  }
   FoldedSamples folded;
   if (count > 0) folded.order = OrderOf(make(0).stencils);
   const Order order = SetCells(count, make, num_threads, &folded);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trilobe/core/base/angles.h"
+#include "trilobe/model/objective/folded_grid.h"
 
 namespace trilobe {
 namespace {
@@ -40,11 +41,17 @@ std::optional<RepeatNoise> UnlessRounding(const RepeatNoise& noise) {
 
 std::optional<RepeatNoise> NoiseOfRepeats(const Objective& data) {
   const BrdfSamples& samples = data.samples();
-  if (data.folded() != nullptr) {
+  if (data.on_grid()) {
     // Each bin has one with the directions exchanged, and a pair's variance is twice what remains
-    // beside its mean.
-    const double black = data.MeasuredEnergy();
-    return UnlessRounding({samples.size(), black > 0 ? 2 * data.IrreducibleEnergy() / black : 0});
+    // beside its mean. A model that stretches highlights has samples of its own, not this fold.
+    double black = data.MeasuredEnergy(), left = data.IrreducibleEnergy();
+    if (data.folded() == nullptr) {
+      const FoldedGrid folded =
+          Fold(samples, data.spec().g_axis.size, data.weighting(), data.num_threads());
+      black = folded.measured_energy;
+      left = folded.constant;
+    }
+    return UnlessRounding({samples.size(), black > 0 ? 2 * left / black : 0});
   }
   std::vector<Key> keys(samples.size());
   for (int j = 0; j < samples.size(); ++j) keys[j] = KeyOf(samples, j, data.spec().anisotropic());
