@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -30,13 +31,12 @@ constexpr double kLittleProgress = 1e-3;
 // columns.
 constexpr double kMinSquaredLength = 1e-2;
 
-// Elimination order of the parameters of anisotropic models: D of all lobes first, azimuth by
-// azimuth. An entry of D has products with those of D that some sample reads together with it, its
-// neighbours, and with all of F, G and the amplitudes.
-std::vector<size_t> EliminationOrder(const FactorModel& model) {
+// Elimination order of anisotropic models: D of all lobes first, azimuth by azimuth. An entry of D
+// has products with those of D that some sample reads together with it, its neighbours, and with
+// all of F, G and the amplitudes.
+std::vector<size_t> OrderByAzimuth(const FactorModel& model) {
   const ModelSpec& spec = model.spec();
   std::vector<size_t> order;
-  if (!spec.d_axis.polar()) return order;
   const int phis = spec.d_axis.phi_nodes, thetas = spec.d_axis.size / phis;
   for (int b = 0; b < phis; ++b) {
     for (int a = 0; a < thetas; ++a) {
@@ -49,6 +49,40 @@ std::vector<size_t> EliminationOrder(const FactorModel& model) {
   for (size_t k = D + order.size(); k < size; ++k) order.push_back(k);
   for (size_t k = 0; k < D; ++k) order.push_back(k);
   return order;
+}
+
+// Elimination order of models with D by channel: what one channel reads alone, channel after
+// channel, then what all read. Parameters of different channels have no products.
+std::vector<size_t> OrderByChannel(const FactorModel& model) {
+  const ModelSpec& spec = model.spec();
+  std::array<std::vector<std::pair<Factor, int>>, kChannels + 1> tables;  // the last: of all
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const auto [begin, end] = spec.channels(factor, t);
+      tables[end - begin == 1 ? begin : kChannels].emplace_back(factor, t);
+    }
+  }
+  std::vector<size_t> order;
+  for (int c = 0; c <= kChannels; ++c) {
+    if (c < kChannels) {
+      for (int a = 0; a <= spec.lobes; ++a) order.push_back(kChannels * a + c);
+    }
+    for (const auto& [factor, t] : tables[c]) {
+      for (int k = 0; k < spec.table_size(factor); ++k) {
+        order.push_back(model.TableOffset(factor, t) + k);
+      }
+    }
+  }
+  return order;
+}
+
+// The order in which parameters are eliminated, where that leaves zeros in the factor; empty: as
+// they are stored.
+std::vector<size_t> EliminationOrder(const FactorModel& model) {
+  const ModelSpec& spec = model.spec();
+  if (spec.d_axis.polar()) return OrderByAzimuth(model);
+  if (spec.D.per_channel) return OrderByChannel(model);
+  return {};
 }
 
 }  // namespace
