@@ -125,11 +125,15 @@ class ModelSearch {
     search_.Try(name, model, layout.num_parameters(model.spec()), E);
   }
 
-  // The last candidate, if it is the best that keeps to the budget.
-  void Choose(const FactorModel& model, const TableLayout& layout, const Weighting& weighting) {
+  // The last candidate, if it is the best that keeps to the budget. `is_even`: it is known to have
+  // no rings.
+  void Choose(const FactorModel& model, const TableLayout& layout, const Weighting& weighting,
+              bool is_even = false) {
     if (!search_.LastLeads()) return;
     Candidate& last = search_.last();
-    if (search_.has_leader()) last.has_rings = HasRings(model, objective_.num_threads());
+    if (search_.has_leader() && !is_even) {
+      last.has_rings = HasRings(model, objective_.num_threads());
+    }
     if (last.has_rings) return;
     if (options_.judge_beyond && search_.has_leader()) {
       constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
@@ -179,14 +183,15 @@ class ModelSearch {
     const Objective refitted = prior.JoinTo(some_.ObjectiveFor(pruned.model.spec(), weighting));
     const Reduction stored(refitted.spec(), pruned.layout);
     pruned.model = ContinueFit(refitted, pruned.model, options_.stop, &stored);
+    const bool is_even = !of_fit && !HasRings(pruned.model, objective_.num_threads());
     // Nodes that were chosen by E, with the values of the form.
-    if (!of_fit && HasRings(pruned.model, objective_.num_threads())) pruned.model = model;
+    if (!of_fit && !is_even) pruned.model = model;
     // Scale by what was measured, without the prior.
     const Objective measured = some_.ObjectiveFor(pruned.model.spec(), weighting);
     SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
     ExpandStored(pruned.layout, &pruned.model);
     Try(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
-    Choose(pruned.model, pruned.layout, weighting);
+    Choose(pruned.model, pruned.layout, weighting, is_even);
   }
 
   // For where one parameter a table is still too much: lobes and colours have to go, and no form
@@ -290,23 +295,15 @@ class ModelSearch {
     return true;
   }
 
-  // From the best base, and any within 2 dB of it, fits the form that shares neither F nor D; then
-  // the best of all these with one more lobe. The more nodes there are to choose from, the better
-  // those that thinning leaves.
+  // From the best base fits the form that shares neither F nor D; then the better of both with one
+  // more lobe. The more nodes there are to choose from, the better those that thinning leaves.
   bool FitForms() {
-    constexpr double kNearly = 2;  // [dB]
-    const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;
-    std::vector<Fitted> good;
-    for (const Fitted& base : bases_) {
-      if (base.score < best_base - kNearly) continue;
-      good.push_back(base);
-      const std::optional<ModelForm> form = FormSharingNeither(base.form);
-      if (!form) continue;
+    Fitted best = std::ranges::max(bases_, {}, &Fitted::score);
+    if (const std::optional<ModelForm> form = FormSharingNeither(best.form)) {
       if (!Fit(*form)) return false;
-      good.push_back(forms_.back());
+      if (forms_.back().score > best.score) best = forms_.back();
     }
-    const std::optional<ModelForm> form =
-        FormWithALobeMore(std::ranges::max(good, {}, &Fitted::score).form);
+    const std::optional<ModelForm> form = FormWithALobeMore(best.form);
     return !form || Fit(*form);
   }
 

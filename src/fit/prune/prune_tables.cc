@@ -22,7 +22,7 @@ namespace {
 // Refits of the remaining parameters end when a step gains less than kSmallGain of the budget, or
 // kSmallOfE of E for a budget of parameters; and when kHope times the last gain would not bring E
 // down to the budget.
-constexpr int kMaxPolish = 8, kHope = 4;
+constexpr int kMaxPolish = 8, kMaxPolishByParameters = 3, kHope = 4;
 constexpr double kSmallGain = 0.02, kSmallOfE = 1e-4;
 
 // Nodes are given up and the others refitted, again and again from the result: the part of the
@@ -34,7 +34,7 @@ constexpr double kFewParameters = 0.04, kFirstBite = 0.25;
 
 // For a budget of parameters: share of the excess that is removed at once, if that is more than
 // kFewInExcess.
-constexpr double kExcessAtOnce = 0.75;
+constexpr double kExcessAtOnce = 0.9;
 constexpr int kFewInExcess = 10;
 
 EliminationLimits LimitsFor(const Pruning& pruning, double E, int parameters) {
@@ -57,7 +57,8 @@ void Polish(const Pruning& pruning, PruneState* state) {
   const double small = pruning.by_parameters()
                            ? kSmallOfE * state->E
                            : kSmallGain * (pruning.search_limit() - pruning.E_base());
-  for (int step = 0; step < kMaxPolish && !stepper.exhausted(); ++step) {
+  const int most = pruning.by_parameters() ? kMaxPolishByParameters : kMaxPolish;
+  for (int step = 0; step < most && !stepper.exhausted(); ++step) {
     if (pruning.options().stop()) break;
     const double before = stepper.E();
     if (!stepper.Step()) continue;
