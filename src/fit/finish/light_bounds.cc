@@ -203,27 +203,40 @@ std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& mode
                                        int num_threads) {
   constexpr double kNearByLobes = 0.95;
   constexpr size_t kMost = 180;  // of which each is costly
-  std::vector<PolarAngles> near_by_lobes = AllThetas();
-  if (model.spec().anisotropic()) {
-    near_by_lobes.clear();
-    for (const Looked& looked : LookByLobes(model, num_threads)) {
-      if (ExcessOf(looked.albedo, limit) > kNearByLobes) near_by_lobes.push_back(looked.at);
-    }
-  }
-  const size_t parts = (near_by_lobes.size() + kMost - 1) / kMost;
-  for (size_t part = 0; part < parts; ++part) {
-    std::vector<LightBound> some, near, exceeded;
-    for (size_t k = part; k < near_by_lobes.size(); k += parts) {
-      some.push_back({near_by_lobes[k], limit});
-    }
+  constexpr size_t kParts = 3;
+  const auto exceeded_of = [&](const std::vector<LightBound>& some) {
+    std::vector<LightBound> near, exceeded;
     for (const size_t k : MayExceed(some, 1, model, num_threads)) near.push_back(some[k]);
     const std::vector<Rgb> albedos = AlbedosFrom(near, model, num_threads);
     for (size_t k = 0; k < near.size(); ++k) {
       if (ExcessOf(albedos[k], limit) > 1 + kLightTolerance) exceeded.push_back(near[k]);
     }
+    return exceeded;
+  };
+  std::vector<Looked> near_by_lobes;
+  if (model.spec().anisotropic()) {
+    near_by_lobes = LookByLobes(model, num_threads);
+    std::erase_if(near_by_lobes, [&](const Looked& looked) {
+      return !(ExcessOf(looked.albedo, limit) > kNearByLobes);
+    });
+  } else {
+    for (const PolarAngles& at : AllThetas()) near_by_lobes.push_back({at, {}});
+  }
+  const size_t parts = (near_by_lobes.size() + kMost - 1) / kMost;
+  for (size_t part = 0; part < std::min(parts, kParts); ++part) {
+    std::vector<LightBound> some;
+    for (size_t k = part; k < near_by_lobes.size(); k += parts) {
+      some.push_back({near_by_lobes[k].at, limit});
+    }
+    std::vector<LightBound> exceeded = exceeded_of(some);
     if (!exceeded.empty()) return exceeded;
   }
-  return {};
+  if (parts <= kParts) return {};
+  std::ranges::stable_sort(near_by_lobes, std::ranges::greater(),
+                           [&](const Looked& looked) { return ExcessOf(looked.albedo, limit); });
+  std::vector<LightBound> largest;
+  for (size_t k = 0; k < kMost; ++k) largest.push_back({near_by_lobes[k].at, limit});
+  return exceeded_of(largest);
 }
 
 PeakAlbedo PeakOfLookedAt(const FactorModel& model, int num_threads) {

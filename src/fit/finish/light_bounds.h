@@ -40,7 +40,9 @@ std::vector<size_t> MayExceed(const std::vector<LightBound>& bounds, double by,
 // quickly: by fewer azimuths of half vectors and, of an anisotropic model, by lobes, which reflect
 //   A_m(theta, phi) = K_m(theta, phi) G_m(theta, phi) / cos theta,
 // with the smooth K_m interpolated. Those that may exceed are looked at well, some hundreds at a
-// time; as soon as some do, these stand for all. The same bits for any number of threads.
+// time; as soon as some do, these stand for all. Of thousands, which a limit that holds everywhere
+// leaves near it, one in some and those that are largest by lobes are looked at. The same bits for
+// any number of threads.
 std::vector<LightBound> ExceededBounds(const Rgb& limit, const FactorModel& model, int num_threads);
 
 // The largest directional albedo of an anisotropic model there: of those that are largest at a
