@@ -6,6 +6,7 @@
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "fit/reports/bands_report.h"
+#include "fit/reports/ggx_lobe.h"
 #include "fit/reports/model_report.h"
 #include "fit/reports/print.h"
 #include "io/formats/stretch_json.h"
@@ -67,6 +68,15 @@ BrdfFunction BrdfOf(const FactorModel& model, double phi_i) {
 
 Rgb ToRgb(std::span<const double> values) { return {values[0], values[1], values[2]}; }
 
+Json ToJson(const std::optional<GgxLobe>& lobe) {
+  if (!lobe) return nullptr;
+  return {{"alpha_x", lobe->alpha_x},
+          {"alpha_y", lobe->alpha_y},
+          {"turn_deg", RadiansToDegrees(lobe->turn)},
+          {"f0", lobe->f0},
+          {"elsewhere", lobe->elsewhere}};
+}
+
 }  // namespace
 
 void DescribeModel(const std::string& path) {
@@ -89,6 +99,8 @@ void DescribeModel(const std::string& path) {
         {"d", ToRgb(model.d())},
         {"s", Json::array()}};
     for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(ToRgb(model.s(m)));
+    json["ggx"] = Json::array();
+    for (int m = 0; m < spec.lobes; ++m) json["ggx"].push_back(ToJson(NearestGgx(model, m)));
     json["wavelengths"] = file.spectral ? Json(file.spectral->wavelengths()) : Json();
     json["light"] = ToJson(light);
     for (const Factor factor : kFactors) {
@@ -156,6 +168,9 @@ void DescribeModel(const std::string& path) {
                          : Text(s) + "; reflects " + Text(100 * light.Share(m), 3) +
                                " % of the light, albedo " + Text(light.lobes[m]) +
                                (light.nearly_diffuse[m] ? "; nearly diffuse" : ""));
+    if (const std::optional<GgxLobe> ggx = NearestGgx(model, m)) {
+      PrintLine("  as GGX", GgxText(*ggx));
+    }
   }
   if (!fit.source.empty()) PrintLine("fitted to", fit.source);
   if (!fit.solver.empty()) {

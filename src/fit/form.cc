@@ -1,7 +1,9 @@
 #include "trilobe/fit/form.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "core/base/names.h"
@@ -71,7 +73,18 @@ const std::vector<NamedForm>& NamedForms() {
   return forms;
 }
 
-const NamedForm& FindForm(std::string_view name) { return FindNamed("model", name, NamedForms()); }
+const NamedForm& FindForm(std::string_view name) {
+  // Models of a few numbers are made of those of tables.
+  constexpr std::string_view kOfFewNumbers[] = {"ggx", "gltf", "disney", "principled", "openpbr"};
+  if (std::ranges::find(kOfFewNumbers, name) != std::end(kOfFewNumbers)) {
+    throw Error(ErrorKind::kUnsupported,
+                "model '" + std::string(name) +
+                    "': fits are of tables; roughness, F0 and base colour come from "
+                    "`trilobe convert SOURCE --out=FILE.gltf`, or .mtlx or .principled.json")
+        .About("model", name);
+  }
+  return FindNamed("model", name, NamedForms());
+}
 
 int LobesOf(const FormOptions& options) {
   return options.lobes.value_or(options.kind == Kind::kIndependent ? 1 : kLobes);
