@@ -7,43 +7,24 @@ set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/setup.sh
+source scripts/bare_root.sh
 python=$(realpath "$1") folder=$2
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 
-# copy FILE...: to the same path below the root.
-copy() { cp --recursive --parents --dereference --target-directory="$root" "$@"; }
-
-# Debian's lib is a link to usr/lib, and so on.
-for link in /bin /sbin /lib /lib64; do [[ ! -L $link ]] || cp --no-dereference "$link" "$root"; done
-mkdir -p "$root"/{usr/{bin,sbin,lib,lib64},dev,proc,tmp,wheels}
-cp -a /dev/null /dev/urandom "$root/dev"
-programs=(/usr/bin/{bash,env,ls} "$python")
 mapfile -t standard_library < <("$python" -c 'import sysconfig
 print(sysconfig.get_path("stdlib"), getattr(__import__("ensurepip"), "_WHEEL_PKG_DIR", None) or "", sep="\n")')
+mkdir -p "$root/wheels"
 for place in "${standard_library[@]}"; do
   [[ -z $place ]] || tar -C / --exclude={dist-packages,site-packages,test,'config-*'} -c "${place#/}" | tar -C "$root" -x
 done
-copy "${programs[@]}" /etc/ld.so.conf /etc/ld.so.conf.d
-# Libraries that these load; all of glibc, and of C++ those that a manylinux wheel takes from the system.
-libc=$(ldconfig -p | awk '$1 == "libc.so.6" && !n++ { print $NF }')
-cxx=$(ldconfig -p | awk '$1 == "libstdc++.so.6" && !n++ { print $NF }')
-mapfile -t libraries < <({
-  printf '%s\n' "${libc%/*}"/lib{c,m,mvec,pthread,dl,rt,util}.so.* "$cxx"
-  ldd "${programs[@]}" "${standard_library[0]}"/lib-dynload/*.so "$cxx" | grep -oP '/\S+\.so\S*(?= \()'
-} | sort -u)
-copy "${libraries[@]}"
-ldconfig -r "$root"
+make_bare_root "$root" "$python" "${standard_library[0]}"/lib-dynload/*.so
 
 "$python" -m pip download --quiet --disable-pip-version-check --only-binary=:all: --dest="$root/wheels" 'numpy>=1.22'
 cp "$folder"/*.whl "$root/wheels"
-unneeded=$(find "$root" -regextype posix-extended -regex \
-  '.*/(lib(gsl|ceres|glog|gflags|blas|lapack|openblas|cholmod|pugixml|gfortran|gomp)[^/]*|(gcc|g\+\+|cc1|cc|ld|clang|cmake)[-0-9.]*)')
-[[ -z $unneeded ]] || die "the bare root is not bare: $unneeded"
-echo "The root has $(du -sm "$root" | cut -f1) MB, and no compiler, GSL, Ceres Solver, glog, gflags or BLAS."
+expect_bare "$root"
 
-# The program finds the libraries of its wheel by /proc.
-bare() { unshare --mount --pid --fork --root="$root" --mount-proc /usr/bin/env -i HOME=/tmp PATH=/usr/bin "$@"; }
+bare() { within "$root" "$@"; }
 
 at_most() { awk -v is="$1" -v limit="$2" 'BEGIN { exit !(is <= limit) }' || die "$3 took $1 s, more than $2 s"; }
 
@@ -93,9 +74,8 @@ bare /all/bin/python /example.py | sed "s/^/README.md's example: /"
 # The wheel's program and the one that was built for it have the same fits, to the bit.
 fit=(fit synth:copper@24x24x48 --noplots)
 bare /all/bin/trilobe "${fit[@]}" --out=/tmp/copper 2>"$root/notes" | grep ^verdict
-"$folder/build/trilobe/bin/trilobe" "${fit[@]}" --out="$root/tmp/here" >"$root/report" 2>&1
-untimed() { grep -vE '"(seconds|date|run)":' "$root/tmp/$1/model.json"; }
-diff <(untimed copper) <(untimed here)
+without "$folder/build/trilobe/bin/trilobe" "${fit[@]}" --out="$root/tmp/here" >"$root/report" 2>&1
+diff <(untimed "$root/tmp/copper") <(untimed "$root/tmp/here")
 bare /all/bin/pip uninstall --quiet --yes trilobe
 bare /all/bin/python /evaluate.py | cmp - "$root/said"
 echo "Without trilobe, trilobe-evaluate goes on."

@@ -76,6 +76,9 @@ scripts/check_pip.sh
 step "Building wheels of it, and installing them where there is nothing but Python"
 scripts/wheels.sh --check
 
+step "Packing the program, and running it where there is nothing but glibc"
+scripts/archive.sh --check
+
 step "Fitting the materials that come along anew"
 quietly materials materials/make ${3:+"$3"} --check
 
