@@ -31,14 +31,14 @@ export const albedo = theta => albedosAt(theta, null).fitted;
 
 // ---- Albedos over all angles, one at a time -----------------------------------------------------------------------
 
-const ALBEDO_DEGREES = [...Array.from({length: 18}, (_, k) => 5 * k), 88];
+export const ALBEDO_DEGREES = [...Array.from({length: 18}, (_, k) => 5 * k), 88];
 
-// True once page.albedo has all: [{degrees, fitted, measured}...].
+// Adds an angle to page.albedo, [{degrees, fitted, measured}...]; false where it has all.
 export function continueAlbedo() {
   page.albedo ??= [];
   const done = page.albedo.length;
   if (done === ALBEDO_DEGREES.length) return false;
   const degrees = ALBEDO_DEGREES[done], rho = hasMeasured() && !hasSamples() ? page.measured.rho : null;
   page.albedo.push({degrees, ...albedosAt((degrees * Math.PI) / 180, rho)});
-  return done + 1 === ALBEDO_DEGREES.length;
+  return true;
 }

@@ -23,6 +23,14 @@ export function niceTicks(low, high, about = 3) {
   return Array.from({length: Math.floor(high / step) - Math.ceil(low / step) + 1}, (_, k) => (Math.ceil(low / step) + k) * step);
 }
 
+// Two or more of a range that has no two powers of ten.
+export function fineTicks(low, high) {
+  const inside = v => v >= low && v <= high, decade = Math.floor(Math.log10(low));
+  let ticks = [0, 1].flatMap(k => [1, 2, 5].map(m => +(m * 10 ** (decade + k)).toPrecision(1))).filter(inside);
+  for (let about = 3; ticks.length < 2 && about < 100; about *= 2) ticks = niceTicks(low, high, about).filter(v => v > 0 && inside(v));
+  return ticks;
+}
+
 // Between the points beside x, or null; of dots the nearest.
 function valueAt({points, dots}, x, reach) {
   if (dots) {
@@ -44,14 +52,16 @@ export class LineChart {
     Object.assign(this, {svg, file, axes, angle, unit, changeScale, figure: svg.closest('figure'), drawn: null, zoom: null, cursor: null});
     svg.setAttribute('tabindex', '0');
     this.values = element('output', {className: 'values', hidden: true});
+    this.waiting = [];  // buttons that need something drawn
     this.figure.append(this.makeTools(), this.values);
     this.listen();
   }
 
   makeTools() {
     const button = (text, label, click) => {
-      const made = element('button', {type: 'button', textContent: text, ariaLabel: label, title: label});
+      const made = element('button', {type: 'button', textContent: text, ariaLabel: label, title: label, disabled: true});
       made.addEventListener('click', click);
+      this.waiting.push(made);
       return made;
     };
     const name = this.svg.getAttribute('aria-label');
@@ -77,6 +87,7 @@ export class LineChart {
     this.drawn = drawn;
     const {width, height} = this.svg.getBoundingClientRect();
     if (width === 0) return;
+    for (const button of this.waiting) button.disabled = false;
     Object.assign(this, {width, height, style: getComputedStyle(this.svg)});
     this.svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
     this.svg.setAttribute('font-family', 'system-ui, sans-serif');
@@ -127,7 +138,7 @@ export class LineChart {
     let rows = decades.length < 5 ? decades : decades.filter(d => d % step === 0);
     rows = rows.map(d => [10 ** d, `10${superscript(d)}`]);
     if (!y.log) rows = niceTicks(low, high).map(v => [v, Math.abs(v) < 1e-12 ? '0' : short(v)]);
-    else if (rows.length < 2) rows = niceTicks(10 ** low, 10 ** high).filter(v => v > 0).map(v => [v, short(v)]);
+    else if (rows.length < 2) rows = fineTicks(10 ** low, 10 ** high).map(v => [v, short(v)]);
     for (const [v, text] of rows) {
       group.append(this.line(LEFT, this.py(v), this.width - RIGHT_EDGE, this.py(v), {stroke}),
                    this.text(LEFT - 5, this.py(v) + 4, text, {'text-anchor': 'end'}));
@@ -242,6 +253,7 @@ export class LineChart {
   }
 
   zoomTo(range) {
+    if (!this.drawn) return;
     this.zoom = range;
     this.whole.hidden = range === null;
     this.draw(this.drawn);

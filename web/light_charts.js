@@ -1,5 +1,6 @@
 // Charts of light from one angle: where the material sends it in the plane of incidence, and how much in all.
 
+import {ALBEDO_DEGREES} from './albedo.js';
 import {DEGREES, byId, pageColor, short} from './dom.js';
 import {hasMeasured, hasSamples, lobeColor, maxAngle, page, referenceWord, state} from './page_state.js';
 import {CHANNEL_COLORS, CHANNEL_NAMES, drawPolar} from './plots.js';
@@ -9,7 +10,8 @@ import {chartOf} from './state_chart.js';
 const MEASURED_COLOR = '#e5674a';
 const PLANE_TICKS = [-90, -60, -30, 0, 30, 60, 90].map(v => [v, `${v < 0 ? '−' : ''}${Math.abs(v)}°`]);
 
-let slice = null, albedoChart = null;
+const slice = chartOf('slice', 'slice', 'slice', ['theta_o_deg', 'rho_per_sr'], 'θo');
+const albedoChart = chartOf('albedo', 'albedo', 'albedo', ['theta_deg', 'albedo'], 'θ');
 
 // theta_o [degrees], positive on the side of the mirror direction; close around it, where peaks are.
 function outgoingDegrees() {
@@ -42,7 +44,6 @@ function inPlane() {
 }
 
 function drawSlice({fitted, measured}) {
-  slice ??= chartOf('slice', 'slice', 'slice', ['theta_o_deg', 'rho_per_sr'], 'θo');
   const series = channelSeries(fitted.map(([degrees, {rho}]) => [degrees, rho]), measured);
   const log = state.log.slice, known = hasMeasured() && !hasSamples() ? Infinity : maxAngle();
   slice.draw({series, x: {min: -90, max: 90, ticks: PLANE_TICKS}, y: log ? {log, decades: 6} : {min: 0}, known: known < 90 ? known : Infinity,
@@ -66,10 +67,19 @@ function drawSide({fitted, measured, known}) {
     `most at ${short(brightest[0])}°, mean ρ cos θo ${short(brightest[1])} /sr; ${dots.length} measured values`;
 }
 
-// Once all of it is known.
+// Why the chart of albedos is not all that it could be, '' where it is.
+function whyAlbedo(rows, measured) {
+  if (rows.length < ALBEDO_DEGREES.length) return `Being summed: ${rows.length} of ${ALBEDO_DEGREES.length} angles.`;
+  if (!hasMeasured() || measured.length === rows.length) return '';
+  if (hasSamples()) return 'Of scattered samples no albedo can be summed.';
+  return measured.length > 0 ? 'Dots end where more than a fifth of the light was not measured.'
+    : 'No dots: at no angle were four fifths of the light measured.';
+}
+
+// As far as it is known.
 export function drawAlbedo() {
-  albedoChart ??= chartOf('albedo', 'albedo', 'albedo', ['theta_deg', 'albedo'], 'θ');
   const rows = page.albedo ?? [], measured = rows.filter(row => row.measured);
+  byId('albedo-why').textContent = whyAlbedo(rows, measured);
   if (rows.length < 2) return;
   const series = channelSeries(rows.map(row => [row.degrees, row.fitted]), measured.map(row => [row.degrees, row.measured]));
   const high = Math.max(1.02, ...series.flatMap(s => s.points.map(p => p[1]))), log = state.log.albedo;

@@ -20,6 +20,7 @@ export function drawMap(at) {
   if (state.phiD === null) page.heatAt = null;
   else if (page.heatAt?.phiD !== state.phiD) page.heatAt = {...mapOf(state.phiD, page.heat), phiD: state.phiD};
   const heat = page.heatAt ?? page.heat;
+  for (const id of ['heat-csv', 'heat-png']) byId(id).disabled = false;
   drawHeat(byId('heat'), heat, at ? [at.theta_h * DEGREES, at.theta_d * DEGREES] : null, isDark());
   drawScale(byId('heat-scale'), SCALE, isDark());
   const hatched = heat.hardlySeen?.includes(1) ?? false, words = differenceWords(heat, hatched);

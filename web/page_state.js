@@ -24,7 +24,8 @@ export const state = {
 };
 
 // The rest. `model` is `base` with the edit; `measured` a table, nodes or samples, or null. Of each file, its name and
-// whether it was dropped on the page; `measured` may also be another model. `seen` is how far apart the two are as shown.
+// whether it was dropped on the page; `measured` may also be another model. `seen` is how far apart the two are as
+// shown: null while it is not known, false where there is nothing to see.
 export const page = {
   base: null, model: null, evaluate: null, measured: null, environment: null, renderer: null, history: null,
   modelFile: {name: contents.name, dropped: false}, measuredFile: contents.measured ? {name: contents.source, dropped: false} : null,

@@ -79,14 +79,17 @@ export function applyObject() {
   restart();
 }
 
+function showSeen(seen) {
+  page.seen = seen;
+  showCaptions();
+  showVerdict();
+}
+
 // How far apart the two are as shown, of a picture of the size at which that is told.
 export function judge(level) {
   const {renderer} = page;
-  if (hasSamples()) page.seen ??= compareSamples(page.measured.samples, page.evaluate);
-  else if (!isPictured() || level.size !== renderer.judgedSize || renderer.moving) return;
-  else page.seen = compareImages(renderer.numbersOf(level, 0), renderer.numbersOf(level, 1), renderer.exposure);
-  showCaptions();
-  showVerdict();
+  if (!isPictured() || level.size !== renderer.judgedSize || renderer.moving) return;
+  showSeen(compareImages(renderer.numbersOf(level, 0), renderer.numbersOf(level, 1), renderer.exposure));
 }
 
 export function drawPicture(mark = page.point?.at ?? null) {
@@ -110,8 +113,15 @@ function turn(seconds) {
   }
 }
 
+// How far the picture is, once that takes longer: over all its sizes, so that it never falls.
+function progressText({finer, secondsLeft, isSoftware}) {
+  if (finer === null) return '';
+  const left = finer < 0.03 ? '' : secondsLeft >= 90 ? `, some ${Math.round(secondsLeft / 60)} min left` : secondsLeft >= 10 ? `, some ${Math.round(secondsLeft / 5) * 5} s left` : '';
+  return `finer: ${Math.floor(100 * finer)} %${left}${left && isSoftware ? ', as no graphics card helps' : ''}`;
+}
+
 function showProgress() {
-  const {finer} = page.renderer, text = finer === null ? '' : `finer: ${Math.round(100 * finer)} %`;
+  const text = progressText(page.renderer);
   if (byId('progress').textContent !== text) byId('progress').textContent = text;
 }
 
@@ -125,20 +135,39 @@ export function listenForRest() {
 }
 
 let before = 0;
+let chartsAreDone = false;
+function workOnCharts() {
+  chartsAreDone = false;
+  if (page.chartsStale) drawCharts();
+  else if (!page.dragging && continueAlbedo()) drawAlbedo();
+  else chartsAreDone = true;
+  if (hasSamples() && page.seen === null && !page.dragging) showSeen(compareSamples(page.measured.samples, page.evaluate) ?? false);
+}
+
+function workOnPicture() {
+  const {renderer} = page;
+  const idle = chartsAreDone && renderer.finer !== null && performance.now() - lastInput > IDLE_MS;
+  renderer.slice = idle ? IDLE_SLICE_MS : BUSY_SLICE_MS;
+  if (renderer.work(!edited())) page.pictureStale = true;
+  if (page.pictureStale) drawPicture();
+  showProgress();
+}
+
+// Charts come first and do not wait for the picture, which takes minutes without a graphics card; nor does an error of
+// the one keep the other from being drawn.
 export function frame(now) {
   requestAnimationFrame(frame);
-  const {renderer} = page;
   if (byId('turntable').checked) turn(Math.min(now - before, 100) / 1000);
   before = now;
-  try {
-    renderer.slice = renderer.finer !== null && performance.now() - lastInput > IDLE_MS ? IDLE_SLICE_MS : BUSY_SLICE_MS;
-    if (renderer.work(!edited())) page.pictureStale = true;
-    if (page.pictureStale) drawPicture();
-    if (page.chartsStale && renderer.shown) drawCharts();  // after the first picture, which people wait for
-    else if (renderer.shown && !renderer.pending && !page.dragging && continueAlbedo()) drawAlbedo();
-    showProgress();
-  } catch (error) {
-    tell(error.message);
-    throw error;
-  }
+  const errors = [workOnCharts, workOnPicture].map(work => {
+    try {
+      work();
+      return null;
+    } catch (error) {
+      return error;
+    }
+  }).filter(Boolean);
+  if (errors.length === 0) return;
+  tell(errors[0].message);
+  throw errors[0];
 }

@@ -21,16 +21,18 @@ export class Renderer {
     this.text = shaderText;
     const gl = (this.gl = canvas.getContext('webgl2', {
       alpha: true, antialias: false, preserveDrawingBuffer: true, powerPreference: 'high-performance'}));
-    if (!gl) throw new Error('This browser has no WebGL 2, which the picture needs.');
+    if (!gl) throw new Error('this browser has no WebGL 2');
     if (gl.getExtension('EXT_color_buffer_float')) this.format = gl.RGBA32F;
     else if (gl.getExtension('EXT_color_buffer_half_float')) this.format = gl.RGBA16F;
-    else throw new Error('This browser cannot draw into float textures, which the picture needs.');
+    else throw new Error('this browser cannot draw into float textures');
+    this.isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(gl.RENDERER));
     this.programs = {};
     this.levels = [];
     this.size = 0;
     this.patience = 1;  // seconds that a finer picture may take before the page shows that it is being drawn
     this.slice = FRAME_MS;  // that one call of work() may take, about
-    this.finer = null;  // the part that is done of a picture that takes longer
+    this.finer = null;  // the part that is done of all sizes of a picture that takes longer
+    this.content = 0;  // counts what was shown; a level that is finished keeps the number of what it shows
     this.rate = 2e6;  // evaluations a second, until it is known better
     this.exposure = 0;
     this.turn = [0, 0];
@@ -186,21 +188,26 @@ export class Renderer {
     this.restart();
   }
 
-  // Sets the width of the object's picture, in pixels.
+  // Sets the width of the object's picture, in pixels. What is finished of it in other sizes stays, so that a window that
+  // changes by a scroll bar makes nothing coarser.
   setSize(size) {
     if (size === this.size) return;
-    const {gl} = this;
-    for (const level of this.levels) {
-      for (const t of level.textures) gl.deleteTexture(t);
-      for (const f of level.framebuffers) gl.deleteFramebuffer(f);
-    }
+    const before = this.levels;
     this.size = size;
     this.levels = [];
     // Halves, but of JUDGED and its doubles, so that it is among them.
     const coarser = s => (s <= JUDGED ? Math.round(s / 2) : JUDGED * 2 ** Math.max(Math.floor(Math.log2((0.7 * s) / JUDGED)), 0));
-    for (let s = size; s >= COARSEST; s = coarser(s)) this.levels.unshift(this.makeLevel(s));
-    this.shown = null;
-    this.restart();
+    for (let s = size; s >= COARSEST; s = coarser(s)) this.levels.unshift(before.find(level => level.size === s) ?? this.makeLevel(s));
+    if (this.exposure === 0) ++this.content;
+    this.begin();
+    for (const level of before) if (!this.levels.includes(level) && level !== this.shown) this.drop(level);
+  }
+
+  drop(level) {
+    const {gl} = this;
+    for (const t of level.textures) gl.deleteTexture(t);
+    for (const f of level.framebuffers) gl.deleteFramebuffer(f);
+    gl.deleteRenderbuffer(level.depth);
   }
 
   makeLevel(size) {
@@ -216,12 +223,18 @@ export class Renderer {
     // Two sums by turns a material, and what was finished last of each.
     const side = k => ({textures: sums.slice(3 * k, 3 * k + 3), targets: targets.slice(3 * k, 3 * k + 3), done: 2, last: 0});
     return {size, normals, tangents, surface, sides: [side(0), side(1)], textures: [normals, tangents, ...sums],
-            framebuffers: [surface, ...targets], surfaceOf: ''};
+            framebuffers: [surface, ...targets], depth, surfaceOf: '', content: -1};
   }
 
   get judgedSize() { return Math.min(this.size, JUDGED); }
 
+  // Draws all again, as something else is shown.
   restart() {
+    ++this.content;
+    this.begin();
+  }
+
+  begin() {
     this.pending = true;
     this.progress = this.finer = null;
   }
@@ -264,13 +277,21 @@ export class Renderer {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, new Float32Array(4));
   }
 
-  // Finished sums are kept apart from those that are being made.
+  // Finished sums are kept apart from those that are being made. A finer picture of the same stays, but for one that is
+  // as large as the panel.
   publish(level) {
     for (const side of level.sides) {
       [side.textures[2], side.textures[side.last]] = [side.textures[side.last], side.textures[2]];
       [side.targets[2], side.targets[side.last]] = [side.targets[side.last], side.targets[2]];
     }
+    const {shown} = this;
+    if (!shown || shown.content !== level.content || shown.size <= level.size || level.size === this.size) this.present(level);
+  }
+
+  present(level) {
+    const {shown} = this;
     this.shown = level;
+    if (shown && !this.levels.includes(shown)) this.drop(shown);
   }
 
   numbersOf(level, number) {
@@ -315,6 +336,7 @@ export class Renderer {
     const lamp = exposing ? null : this.lamp;
     const cells = lamp ? 1 : this.numCells;
     const costOf = level => level.size ** 2 * 0.7 * cells * sides.length;
+    const costFrom = (first, end) => levels.slice(first, end).reduce((sum, each) => sum + costOf(each), 0);
     if (!this.progress) {
       // The most pixels that one frame can do.
       let first = 0;
@@ -323,7 +345,14 @@ export class Renderer {
       const judged = levels.findIndex(level => level.size === this.judgedSize);
       if (lamp && this.moving) first = Math.max(first, levels.length - 2, 0);
       else first = Math.min(first, judged);
-      this.progress = {level: first, side: 0, cell: 0};
+      const done = levels.findLastIndex(each => each.content === this.content);
+      if (done === levels.length - 1) {
+        this.present(levels[done]);
+        this.pending = false;
+        return true;
+      }
+      first = Math.max(first, done + 1);
+      this.progress = {level: first, first, side: 0, cell: 0};
     }
     const {progress} = this, level = levels[progress.level];
     const begin = performance.now();
@@ -341,18 +370,21 @@ export class Renderer {
       if (this.measuredRate && cost > 2e4) this.rate = Math.min(Math.max(0.5 * this.rate + (0.5 * cost) / Math.max(seconds, 1e-4), 2e5), 1e10);
       this.measuredRate = true;
       progress.cell += count;
-      const all = cells * sides.length;
-      this.finer = costOf(level) > this.patience * this.rate ? (progress.side * cells + progress.cell) / all : null;
+      const whole = costFrom(progress.first, this.moving ? progress.level + 1 : undefined);
+      const done = costFrom(progress.first, progress.level) + costOf(level) * (progress.side * cells + progress.cell) / (cells * sides.length);
+      this.secondsLeft = (whole - done) / this.rate;
+      if (this.finer !== null || this.secondsLeft > this.patience) this.finer = done / whole;
       if (progress.cell < cells) continue;
       progress.cell = 0;
       if (++progress.side < sides.length) continue;
+      level.content = exposing && this.lamp ? -1 : this.content;
       this.publish(level);
       if (!lamp && exposes && (exposing || this.environmentTurn === 0) && this.object === 'sphere') this.expose(level);
       else if (exposing) this.expose(level);
       if (exposing && this.lamp) {
-        this.progress = null;  // and now by the lamp
+        this.begin();  // and now by the lamp
       } else if (progress.level + 1 < levels.length && !this.moving) {
-        this.progress = {level: progress.level + 1, side: 0, cell: 0};
+        this.progress = {...progress, level: progress.level + 1, side: 0, cell: 0};
       } else {
         this.pending = false;
         this.finer = null;
