@@ -26,12 +26,11 @@ export function checkedEdit(edit, model) {
 }
 
 // Codes of sRGB as light, and back.
-export function linearOf(hex) {
-  return [1, 3, 5].map(at => {
-    const code = parseInt(hex.slice(at, at + 2), 16) / 255;
-    return code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4;
-  });
+export function linearOfCode(byte) {
+  const code = byte / 255;
+  return code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4;
 }
+export const linearOf = hex => [1, 3, 5].map(at => linearOfCode(parseInt(hex.slice(at, at + 2), 16)));
 export function hexOf(linear) {
   return '#' + linear.map(x => {
     const c = Math.min(Math.max(x, 0), 1);

@@ -10,8 +10,8 @@ import {probeEnvironment, studioEnvironment} from './environment.js';
 import {visibilityOf} from './judge.js';
 import {listenToMap} from './map.js';
 import {evaluatorOf, formatModel, isNearlyDiffuse, parseModel} from './model.js';
-import {DRAGS, LIGHTS, VIEWS, contents, edited, forget, hasSamples, isModelBeside, isPictured, lampDirection, maxAngle, modelFileName, page, referenceTitle, state, stateText, takeState, whatTheLinkHolds} from './page_state.js';
-import {applyLight, applyObject, drawPicture, frame, judge, layout, listenForRest} from './picture.js';
+import {DRAGS, LIGHTS, VIEWS, contents, edited, forget, hasSamples, hasViews, isModelBeside, isPictured, lampDirection, maxAngle, modelFileName, ownTitle, page, referenceTitle, state, stateText, takeState, whatTheLinkHolds} from './page_state.js';
+import {applyLight, applyObject, becomeStill, drawPicture, frame, judge, layout, listenForRest} from './picture.js';
 import {listenToPointer} from './pointer.js';
 import {lookAgain, showNumbers} from './readout.js';
 import {Renderer} from './renderer.js';
@@ -39,16 +39,16 @@ function showView() {
 
 // A file has come: all that is shown is of what the page holds now.
 function filesChanged() {
-  if (!isPictured()) state.view = 'fitted';
-  const names = isModelBeside() ? {measured: 'Beside', fitted: 'Model'} : {}, views = isPictured() ? VIEWS.compared : VIEWS.alone;
+  if (!hasViews()) state.view = 'fitted';
+  const names = isModelBeside() ? {measured: 'Beside', fitted: 'Model'} : page.modelFile.dropped ? {fitted: 'Model'} : {}, views = hasViews() ? VIEWS.compared : VIEWS.alone;
   makeSegments('views', views.map(([value, text]) => [value, names[value] ?? text]), 'view', showView);
   makeSegments('lights', LIGHTS, 'light', applyLight);
-  const own = isModelBeside() ? page.modelFile.name : 'Fitted';
   byId('wipe-left').textContent = referenceTitle();
-  byId('wipe-right').textContent = own;
-  byId('map-what').textContent = isModelBeside() ? `${own} over ${referenceTitle()}` : 'Fitted over measured';
-  byId('views').hidden = !isPictured();
-  byId('guess-key').hidden = !isPictured() && maxAngle() >= 90;
+  byId('wipe-right').textContent = ownTitle();
+  byId('map-what').textContent = `${ownTitle()} over ${isModelBeside() ? referenceTitle() : 'measured'}`;
+  byId('fit-title').textContent = page.modelFile.dropped ? 'The model' : 'The fit';
+  byId('views').hidden = !hasViews();
+  byId('guess-key').hidden = page.renderer.isStill || (!isPictured() && maxAngle() >= 90);
   forget();
   page.renderer.leastCosine = maxAngle() < 90 ? Math.cos(maxAngle() / DEGREES) : 0;
   page.renderer.setMeasured(isPictured() ? page.measured : null);
@@ -128,7 +128,7 @@ function listenToControls() {
   });
   byId('shot').addEventListener('click', () => {
     drawPicture(null);
-    byId('canvas').toBlob(blob => download(blob, 'image/png', `${modelFileName()}.png`));
+    page.renderer.canvas.toBlob(blob => download(blob, 'image/png', `${modelFileName()}.png`));
     page.pictureStale = true;
   });
   byId('link').addEventListener('click', copyLink);
@@ -179,15 +179,28 @@ function takeContents() {
   page.environment = contents.probe ? probeEnvironment(contents.probe, bytesOf(contents.probe.data)) : studioEnvironment();
 }
 
-async function begin() {
-  takeContents();
-  applyTheme();
-  const shaders = JSON.parse(byId('shaders').textContent);
-  const renderer = (page.renderer = new Renderer(byId('canvas'), file => shaders[file]));
-  renderer.onImage = level => {
+function makeRenderer() {
+  const shaders = JSON.parse(byId('shaders').textContent), canvas = byId('canvas');
+  try {
+    page.renderer = new Renderer(canvas, file => shaders[file]);
+  } catch (error) {
+    return becomeStill(error.message);
+  }
+  page.renderer.onImage = level => {
     judge(level);
     lookAgain();
   };
+  canvas.addEventListener('webglcontextlost', () => {
+    becomeStill('the graphics card has dropped it');
+    filesChanged();
+  });
+}
+
+async function begin() {
+  takeContents();
+  applyTheme();
+  makeRenderer();
+  const {renderer} = page;
   renderer.setEnvironment(page.environment);
   renderer.object = state.object;
   renderer.turn = state.object === 'cloth' ? [state.turn[0], 0] : state.turn;

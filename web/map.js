@@ -2,7 +2,7 @@
 
 import {HARDLY_SEEN, differenceMap, differencePoints, differenceWords} from './difference.js';
 import {DEGREES, byId, download, isDark} from './dom.js';
-import {hasMeasured, hasSamples, modelFileName, page, state} from './page_state.js';
+import {hasMeasured, hasSamples, modelFileName, ownWord, page, state} from './page_state.js';
 import {drawHeat, drawScale} from './plots.js';
 
 const SCALE = [-33, -20, -10, 0, 10, 25, 50];  // percent
@@ -23,7 +23,7 @@ export function drawMap(at) {
   for (const id of ['heat-csv', 'heat-png']) byId(id).disabled = false;
   drawHeat(byId('heat'), heat, at ? [at.theta_h * DEGREES, at.theta_d * DEGREES] : null, isDark());
   drawScale(byId('heat-scale'), SCALE, isDark());
-  const hatched = heat.hardlySeen?.includes(1) ?? false, words = differenceWords(heat, hatched);
+  const hatched = heat.hardlySeen?.includes(1) ?? false, words = differenceWords(heat, hatched, ownWord());
   byId('typical').textContent = words;
   byId('hardly-seen').hidden = !hatched;
   byId('hardly-share').textContent = `${100 * HARDLY_SEEN} %`;

@@ -37,6 +37,13 @@ export const hasMeasured = () => page.measured !== null;
 export const hasSamples = () => page.measured?.kind === 'samples';
 // Whether there is a picture of what was measured.
 export const isPictured = () => hasMeasured() && !hasSamples();
+// Whether the picture has views to choose from.
+export const hasViews = () => isPictured() && (!page.renderer?.isStill || drawnParts().difference);
+// Of which parts the spheres in the page are as they came; a part that came in no file is none.
+export function drawnParts() {
+  const measured = hasMeasured() && !page.measuredFile.dropped, fitted = !page.modelFile.dropped;
+  return {measured, fitted, difference: measured && fitted && isPictured()};
+}
 export const isModelBeside = () => page.measured?.kind === 'model';
 export const edited = () => isEdited(state.edit, page.base);
 export const lobesText = model => `${model.lobes} ${model.lobes === 1 ? 'lobe' : 'lobes'}`;
@@ -67,6 +74,11 @@ export function heading() {
   const {modelFile, measuredFile} = page;
   return measuredFile && !asItCame() ? `${modelFile.name} beside ${measuredFile.name}` : modelFile.name;
 }
+// Name of the model that is shown, for a title and within a sentence: a dropped one is no fit of the page.
+const isOther = () => page.modelFile.dropped || isModelBeside();
+export const ownTitle = () => (isOther() ? page.modelFile.name : 'Fitted');
+export const ownWord = () => (isOther() ? page.modelFile.name : 'the fit');
+export const ownAdjective = () => (isOther() ? 'modelled' : 'fitted');
 // Name of the measurement or model beside, for a title and within a sentence.
 export const referenceTitle = () => (isModelBeside() ? page.measuredFile.name : 'Measured');
 export const referenceWord = () => (isModelBeside() ? 'beside' : 'measured');

@@ -5,9 +5,10 @@ import {byId, element, tell} from './dom.js';
 import {drawCharts} from './charts.js';
 import {drawAlbedo} from './light_charts.js';
 import {compareImages, compareSamples} from './judge.js';
-import {edited, hasSamples, isPictured, lampDirection, page, state} from './page_state.js';
+import {contents, drawnParts, edited, hasSamples, isPictured, lampDirection, page, state} from './page_state.js';
 import {lookAgain} from './readout.js';
 import {captionOf, pictureLabel, showVerdict} from './said.js';
+import {StillPicture} from './still.js';
 
 let panels = [], shape = [1, 1];
 
@@ -93,8 +94,25 @@ export function judge(level) {
 }
 
 export function drawPicture(mark = page.point?.at ?? null) {
-  page.renderer.show(panels, {wipe: state.wipe, stops: state.exposure, mark});
+  const {width, height} = byId('canvas');
+  page.renderer.show(panels, {wipe: state.wipe, stops: state.exposure, mark, width, height, valid: drawnParts()});
   page.pictureStale = false;
+}
+
+// From now on the picture is what the page holds of it.
+export function becomeStill(why) {
+  if (page.renderer?.isStill) return;
+  page.renderer = new StillPicture(byId('picture'), contents.spheres, why, () => {
+    layout();
+    page.pictureStale = true;
+  });
+  Object.assign(state, {object: 'sphere', light: 'environment', around: 0, turn: [0, 0], exposure: 0});
+  byId('turntable').checked = false;
+  for (const id of ['object', 'lights', 'drags', 'exposure', 'turntable']) byId(id).disabled = true;
+  byId('keys').textContent = 'Point at the sphere to look closer, or move the point by the arrow keys.';
+  byId('still-why').hidden = false;
+  byId('still-why').textContent = `The picture stands still here, as ${why}: neither object nor light can be moved. All else works. ` +
+    (contents.spheres ? 'It is the one that the program drew.' : 'The page holds none that the program drew; one that a newer trilobe writes does.');
 }
 
 // ---- Frame by frame ----------------------------------------------------------------------------------------------
@@ -164,6 +182,7 @@ export function frame(now) {
       work();
       return null;
     } catch (error) {
+      if (work === workOnPicture) becomeStill(`drawing it failed (${error.message})`);
       return error;
     }
   }).filter(Boolean);

@@ -26,7 +26,7 @@ function press(event) {
   const place = placeOf(event);
   if (!place) return;
   const onLine = state.view === 'wipe' && Math.abs((place.at[0] + 1) / 2 - state.wipe) < 0.04;
-  const what = onLine ? 'line' : event.shiftKey ? 'object' : state.drag;
+  const what = onLine ? 'line' : page.renderer.isStill ? 'point' : event.shiftKey ? 'object' : state.drag;
   page.dragging = {panel: place.panel, what, x: event.clientX, at: place.at, around: state.around, turn: state.turn, moved: false};
   if (!onLine) lookAt(place.at);
 }
@@ -39,6 +39,7 @@ function drag(event) {
     return;
   }
   if (dragging.what === 'line') return moveLine(place.at);
+  if (dragging.what === 'point') return lookAt(place.at);
   // A finger that begins to scroll has not moved the light.
   if (!dragging.moved && Math.hypot(...place.at.map((x, k) => x - dragging.at[k])) * place.panel.css < 6) return;
   if (!dragging.moved) byId('canvas').setPointerCapture(event.pointerId);
@@ -60,14 +61,14 @@ function release(event) {
   if (!dragging) return;
   page.dragging = null;
   if (event.type === 'pointerup' && dragging.what === 'light' && !dragging.moved && state.light === 'lamp') state.lamp = dragging.at;
-  if (dragging.what !== 'line') applyLight();
+  if (!['line', 'point'].includes(dragging.what)) applyLight();
 }
 
 function pressKey(event) {
   const step = {ArrowLeft: [-0.05, 0], ArrowRight: [0.05, 0], ArrowUp: [0, 0.05], ArrowDown: [0, -0.05]}[event.key];
   if (!step) return;
   event.preventDefault();
-  if (event.shiftKey) {
+  if (event.shiftKey || page.renderer.isStill) {
     const at = page.point?.at ?? [0, 0];
     lookAt(at.map((x, k) => Math.min(Math.max(x + step[k], -1), 1)));
     if (!page.point) lookAt(at);

@@ -3,7 +3,7 @@
 import {albedo} from './albedo.js';
 import {DEGREES, byId, element, short, shortAngle} from './dom.js';
 import {anglesOf} from './model.js';
-import {hasMeasured, hasSamples, lightDirection, page, referenceWord, state} from './page_state.js';
+import {hasMeasured, hasSamples, lightDirection, ownAdjective, page, referenceWord, state} from './page_state.js';
 import {nearestSample} from './samples.js';
 import {help} from './words.js';
 
@@ -72,9 +72,9 @@ export function showNumbers() {
   if (hasMeasured()) {
     const {title, rho, at: there, why} = measuredAt(lit);
     rows.push([title, rho ? rho.map(short) : lit ? why ?? 'not measured' : '–']);
-    if (there) rows.push(['ρ fitted there', page.evaluate(there.wi, there.wo).rho.map(short)]);
+    if (there) rows.push([`ρ ${ownAdjective()} there`, page.evaluate(there.wi, there.wo).rho.map(short)]);
   }
-  rows.push(['ρ fitted', (fitted ?? none).map(short)]);
+  rows.push([`ρ ${ownAdjective()}`, (fitted ?? none).map(short)]);
   const white = at ? albedo(at.theta_o) : none, mean = white.reduce((a, b) => a + b, 0);
   rows.push(['albedo at θo', white.map(x => (Number.isFinite(x) ? x.toFixed(3) : '–'))]);
   rows.push(['pdf of wi', fitted && mean > 0 ? `${short((fitted.reduce((a, b) => a + b, 0) * lit.wi[2]) / mean)} /sr` : '–']);

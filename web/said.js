@@ -2,7 +2,7 @@
 
 import {byId, counted, element, grouped, short, shortDeltaE} from './dom.js';
 import {visibilityOf} from './judge.js';
-import {asItCame, contents, edited, hasMeasured, hasSamples, heading, isModelBeside, isPictured, lobesText, page, referenceTitle, state} from './page_state.js';
+import {asItCame, contents, drawnParts, edited, hasMeasured, hasSamples, heading, isModelBeside, isPictured, lobesText, ownTitle, ownWord, page, referenceTitle, state} from './page_state.js';
 
 const NOTABLE_REACH = 2;  // the limit of the program's summary
 
@@ -28,8 +28,11 @@ function verdictParts() {
   if (!hasMeasured() && !(judged && contents.source)) {
     return [`A fitted model of ${lobesText(page.base)}. Drop its measurement here (MERL or CSV) to see where they differ.`];
   }
-  const beside = isModelBeside() ? `Beside ${page.measuredFile.name}` : 'Beside what was measured', what = isModelBeside() ? page.modelFile.name : 'the fit';
+  const beside = isModelBeside() ? `Beside ${page.measuredFile.name}` : 'Beside what was measured', what = ownWord();
   parts.push(edited() ? `The model has been changed since. ${beside}, it: ` : `${beside}, ${what}: `);
+  if (!judged && page.renderer?.isStill && !hasSamples()) {
+    return [`${edited() ? 'The model has been changed since. ' : ''}How far apart pictures of the two are is not told without WebGL 2; the map says where they differ.`];
+  }
   if (!judged) return [edited() ? 'The model has been changed since, and is being compared.' : isModelBeside() ? 'The two models are being compared.' : 'Being compared with what was measured.'];
   parts.push(element('b', {className: judged.name, textContent: judged.words}),
              `. Colours are ΔE ${shortDeltaE(judged.mean)} apart in the mean, and 95 % of ${judged.of} stay below ` +
@@ -79,6 +82,7 @@ export function showFacts() {
   if (page.lightFile) row('light', page.lightFile.name);
   if (asItCame() && contents.verdict) row('measured', `${short(100 * contents.measured_share)} % of what a renderer reads`);
   row('form', `${base.anisotropic ? 'anisotropic' : 'isotropic'}, ${formText()}`);
+  if (!modelFile.dropped) row('spectra', contents.wavelengths && `${contents.wavelengths}; shown are their colours`);
   row('solver', fit.solver ? `${fit.solver}${fit.iterations ? `, ${fit.iterations} iterations` : ''}` : '');
   row('stopped', fit.stop_reason);
   row('seconds', fit.seconds ? short(fit.seconds) : '');
@@ -101,7 +105,11 @@ function formText() {
 // Caption of a panel: [title, text].
 export function captionOf(mode) {
   const changed = edited() ? ', edited' : '';
-  const title = isModelBeside() ? page.modelFile.name : 'Fitted';
+  const title = ownTitle(), {renderer} = page;
+  if (renderer?.isStill && !(renderer.isHeld && drawnParts()[mode === 'wipe' ? 'difference' : mode])) {
+    return [mode === 'measured' ? referenceTitle() : mode === 'fitted' ? title : 'Where they differ', 'no picture of it is in the page'];
+  }
+  if (renderer?.isStill && mode === 'fitted' && changed) return [title, 'as it came, without what was changed'];
   if (mode === 'measured') return [referenceTitle(), besideText()];
   if (mode === 'fitted') return [`${title}${changed}`, formText()];
   if (mode === 'wipe') return [`${referenceTitle()} | ${title}${changed}`, 'move the line below the picture, or drag it'];
@@ -113,7 +121,7 @@ export function captionOf(mode) {
 // The canvas in words.
 export function pictureLabel() {
   const light = page.lightFile ? ` by ${page.lightFile.name}` : '';
-  const [own, other] = isModelBeside() ? [page.modelFile.name, referenceTitle()] : ['fitted', 'measured'];
+  const own = ownTitle().replace('Fitted', 'fitted'), other = isModelBeside() ? referenceTitle() : 'measured';
   const what = {side: `${other}, ${own} and their difference`, wipe: `${other} on the left, ${own} on the right`, difference: `the difference of ${other} and ${own}`,
                 measured: other, fitted: own}[state.view];
   const judged = isPictured() ? judgement() : null;

@@ -116,6 +116,7 @@ void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* fol
                        .reach = report.reach,
                        .advice = AdviceIn(verdict)};
   if (report.appearance) compared.seen = report.appearance->sphere;
+  if (report.bands) compared.wavelengths = WavelengthsText(report.bands->model);
   const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, compared,
                                    report.summary.trace, settings.fit.appearance);
   folder->Write(kViewName, [&](std::ostream& out) { out << page.text; });

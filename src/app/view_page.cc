@@ -1,8 +1,11 @@
 #include "app/view_page.h"
 
+#include <utility>
+
 #include "app/fit_page.h"
 #include "fit/reports/verdict_report.h"
 #include "io/pictures/page.h"
+#include "io/pictures/plots.h"
 #include "model/appearance/picture_data.h"
 #include "model/appearance/verdict.h"
 #include "trilobe/model/appearance/environment.h"
@@ -48,7 +51,11 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
   const std::string& source = measured != nullptr ? measured->source : model.fit.source;
   contents.name = FitNameOf(source.empty() ? path : source);
   contents.parameters = model.layout ? model.layout->num_parameters(spec) : spec.num_parameters();
+  contents.wavelengths = model.spectral ? WavelengthsText(*model.spectral) : compared.wavelengths;
   contents.trace.assign(trace.begin(), trace.end());
+  const Material fitted = MaterialOf(model.model);
+  PictureData pictured;
+  std::optional<BrdfTable> sampled;
   const Environment& environment = EnvironmentOf(appearance);
   if (environment.name != StudioEnvironment().name) contents.probe = &environment;
   if (compared.reach) contents.reach = compared.reach->between;
@@ -56,19 +63,18 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
     contents.source = measured->source;
     contents.notes = measured->notes;
     PictureData data = PictureDataOf(*measured);
-    std::optional<BrdfTable> sampled;
     contents.of_sphere = !data.empty() || !seen;
     if (data.empty()) {
       sampled = TableOfSamples(*measured);
       if (sampled) data.table = &*sampled;
     }
     // A table says nothing of azimuths.
-    const Material fitted = MaterialOf(model.model);
     const bool drawn = data.nodes || (data.table != nullptr && fitted.angular);
     if (drawn) {
       contents.measured = data.nodes ? EncodeMeasured(*data.nodes) : EncodeMeasured(*data.table);
       Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, *measured,
               compared.basis, &contents);
+      pictured = std::move(data);
     } else {
       if (!measured->table) {
         contents.measured =
@@ -81,6 +87,7 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
       }
     }
   }
+  contents.spheres = PngOfSpheres(pictured, fitted, appearance);
   contents.notes.insert(contents.notes.end(), compared.advice.begin(), compared.advice.end());
   return {.text = FormatPage(model, contents), .has_measured = contents.measured.has_value()};
 }

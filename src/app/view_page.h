@@ -27,6 +27,7 @@ struct Compared {
   std::optional<Basis> basis = {};     // of a verdict; else of the samples of the measurement
   std::optional<Reach> reach = {};     // of the model where nothing was measured
   std::vector<std::string> advice = {};
+  std::string wavelengths = {};  // of the spectral fit that the model is the colours of
 };
 
 // The page of a model (io/pictures/page.h), compared with `measured` unless that is null. `path`

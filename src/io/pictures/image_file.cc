@@ -176,7 +176,7 @@ Environment ParseProbe(std::string_view bytes, const std::string& source) {
 
 Environment ReadProbe(const std::string& path) { return ParseProbe(ReadFile(path), path); }
 
-void WritePng(const std::string& path, int width, int height, const std::string& pixels) {
+std::string EncodePng(int width, int height, const std::string& pixels) {
   CheckNumber("the width of a picture", width, width >= 1, "1 or more");
   CheckNumber("the height of a picture", height, height >= 1, "1 or more");
   CheckSize("a picture", pixels.size(), static_cast<size_t>(width) * height * kChannels);
@@ -186,8 +186,13 @@ void WritePng(const std::string& path, int width, int height, const std::string&
   };
   if (stbi_write_png_to_func(append, &png, width, height, kChannels, pixels.data(),
                              width * kChannels) == 0) {
-    throw ErrorIn(ErrorKind::kFile, path, "cannot encode the picture").About("write");
+    throw Error(ErrorKind::kFile, "cannot encode the picture").About("write");
   }
+  return png;
+}
+
+void WritePng(const std::string& path, int width, int height, const std::string& pixels) {
+  std::string png = EncodePng(width, height, pixels);
   WriteFile(path, [&](std::ostream& out) { out << MarkedPicture(std::move(png)); });
 }
 

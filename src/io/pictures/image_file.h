@@ -13,7 +13,10 @@ namespace trilobe {
 Environment ParseProbe(std::string_view bytes, const std::string& source);
 Environment ReadProbe(const std::string& path);
 
-// Atomically writes an 8-bit RGB picture as PNG. pixels: [height * width * 3], rows from the top.
+// An 8-bit RGB picture as the bytes of a PNG file. pixels: [height * width * 3], rows from the top.
+std::string EncodePng(int width, int height, const std::string& pixels);
+
+// Atomically writes one.
 void WritePng(const std::string& path, int width, int height, const std::string& pixels);
 
 }  // namespace trilobe

@@ -294,7 +294,11 @@ std::string FormatPage(const ModelFile& model, const PageContents& contents) {
                {"trace", ToJson(contents.trace)}};
   if (contents.measured) json["measured"] = ToJson(*contents.measured);
   if (contents.probe != nullptr) json["probe"] = ToJson(*contents.probe);
-  json["model"] = FormatModel(model);
+  if (!contents.wavelengths.empty()) json["wavelengths"] = contents.wavelengths;
+  if (!contents.spheres.empty()) json["spheres"] = Base64(contents.spheres);
+  ModelFile colors = model;
+  colors.spectral.reset();
+  json["model"] = FormatModel(colors);
   return FormatDocument("view.html", Printable(contents.name), JsonText(std::move(json)));
 }
 

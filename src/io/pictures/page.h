@@ -66,7 +66,10 @@ struct PageContents {
   double reach = 0;
   std::vector<std::string> notes;  // on the measurement, and advice
   std::vector<IterationRecord> trace;
+  std::string wavelengths;             // of a spectral fit, in words
   const Environment* probe = nullptr;  // the light; null: the studio, which the page computes
+  // What browsers without WebGL 2 show: PngOfSpheres, of the measurement too if it is drawn.
+  std::string spheres;
 };
 
 // A self-contained HTML file with web/, the model and the measurement. It needs no server and no

@@ -319,27 +319,37 @@ void AddWord(Word word, Raster* raster) {
   raster->height += kPairBelow;
 }
 
-// Writes the two, `size` pixels wide each, over their words.
-void WriteImagePair(const ImagePairs& images, int size, const PairWords& words,
-                    const std::string& path) {
+// The two beside each other, `size` pixels wide each, over their words if there are any.
+Raster PairOf(const ImagePairs& images, int size, int margin, const PairWords* words) {
   const auto& [counted, whole] = images;
   const double exposure = ExposureOf(CompareSpheres(counted.measured, counted.fitted));
-  Raster left = ToneMapped(whole.measured, size, exposure, kPairMargin);
-  Raster right = ToneMapped(whole.fitted, size, exposure, kPairMargin);
-  AddWord(words.left, &left);
-  AddWord(words.right, &right);
-  const size_t row = static_cast<size_t>(left.width) * kChannels;
-  std::string pixels;
-  for (size_t at = 0; at < left.bytes.size(); at += row) {
-    pixels += left.bytes.substr(at, row) + right.bytes.substr(at, row);
+  Raster left = ToneMapped(whole.measured, size, exposure, margin);
+  Raster right = ToneMapped(whole.fitted, size, exposure, margin);
+  if (words != nullptr) {
+    AddWord(words->left, &left);
+    AddWord(words->right, &right);
   }
-  WritePng(path, 2 * left.width, left.height, pixels);
+  const size_t row = static_cast<size_t>(left.width) * kChannels;
+  Raster both{2 * left.width, left.height};
+  for (size_t at = 0; at < left.bytes.size(); at += row) {
+    both.bytes += left.bytes.substr(at, row) + right.bytes.substr(at, row);
+  }
+  return both;
 }
 
-// Writes one alone, so many pixels wide, exposed by itself.
-void WriteImage(const RenderedImage& image, int size, const std::string& path) {
-  const Raster raster = ToneMapped(image, size, ExposureOf(CompareSpheres(image, image)));
-  WritePng(path, raster.width, raster.height, raster.bytes);
+void WriteImagePair(const ImagePairs& images, int size, const PairWords& words,
+                    const std::string& path) {
+  const Raster both = PairOf(images, size, kPairMargin, &words);
+  WritePng(path, both.width, both.height, both.bytes);
+}
+
+// One alone, so many pixels wide, exposed by itself.
+Raster ToneMappedAlone(const RenderedImage& image, int size, int margin = kMargin) {
+  return ToneMapped(image, size, ExposureOf(CompareSpheres(image, image)), margin);
+}
+
+std::string PngOf(const Raster& raster) {
+  return EncodePng(raster.width, raster.height, raster.bytes);
 }
 
 // Pixels of a picture over those of the sphere that fits are judged by; what is drawn is as large
@@ -391,7 +401,8 @@ void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const st
 
 void DrawFittedSphere(const Material& fitted, const std::string& path,
                       const AppearanceOptions& options) {
-  WriteImage(RenderPicture(fitted, Enlarge(options, kSizeOfTable)), 594, path);
+  const Raster alone = ToneMappedAlone(RenderPicture(fitted, Enlarge(options, kSizeOfTable)), 594);
+  WritePng(path, alone.width, alone.height, alone.bytes);
 }
 
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
@@ -411,6 +422,16 @@ void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const
                      const AppearanceOptions& options, const PairWords& words) {
   const int size = 2 * options.size;
   WriteImagePair(RenderPicture(measured, fitted, Enlarge(options, 2)), size, words, path);
+}
+
+std::string PngOfSpheres(const PictureData& measured, const Material& fitted,
+                         const AppearanceOptions& options) {
+  if (measured.empty())
+    return PngOf(ToneMappedAlone(RenderPicture(fitted, options), options.size, 0));
+  const ImagePairs images =
+      measured.nodes ? RenderPicture(*measured.nodes, fitted.spherical, Shape::kSphere, options)
+                     : RenderPicture(*measured.table, fitted.angular, options);
+  return PngOf(PairOf(images, options.size, 0, nullptr));
 }
 
 void WriteSpherePair(const PictureData& measured, const Material& fitted, const std::string& path,

@@ -68,6 +68,11 @@ void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const
 void WriteSpherePair(const PictureData& measured, const Material& fitted, const std::string& path,
                      const AppearanceOptions& options, const PairWords& words = {});
 
+// The same without words, as the bytes of a PNG file, options.size pixels wide each; of the fitted
+// one alone if `measured` is empty. For a page.
+std::string PngOfSpheres(const PictureData& measured, const Material& fitted,
+                         const AppearanceOptions& options);
+
 // Coverage: for each degree of theta_i and theta_o the valid share of the bins above the surface.
 // The dashed line is table.max_theta.
 void DrawMeasured(const BrdfTable& table, const std::string& path);
