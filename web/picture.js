@@ -16,10 +16,10 @@ export function layout() {
   const picture = byId('picture'), canvas = byId('canvas'), width = picture.clientWidth;
   const scale = Math.min(window.devicePixelRatio || 1, 2), gap = 14;
   const modes = state.view === 'side' ? ['measured', 'fitted', 'difference'] : [state.view];
-  const columns = modes.length === 1 ? 1 : width < 620 ? 2 : 3, caption = columns === 2 ? 62 : 46;  // one more line
+  const columns = modes.length === 1 ? 1 : width < 460 ? 2 : 3, caption = columns === 2 ? 62 : 46;  // one more line
   if (width === 0) return;  // not on a screen
   const size = Math.floor(Math.min((width - gap * (columns + 1)) / columns, modes.length === 1 ? 560 : 620,
-                                   Math.max(window.innerHeight * 0.58, 220)));
+                                   Math.max(window.innerHeight * 0.46, 220)));
   const rows = Math.ceil(modes.length / columns), height = rows * (size + caption + gap) + gap / 2;
   canvas.style.height = `${height}px`;
   const [w, h] = [Math.round(width * scale), Math.round(height * scale)];
@@ -32,8 +32,19 @@ export function layout() {
     return {mode, left, top, css: size, x: Math.round(left * scale), y: Math.round(top * scale), size: Math.round(size * scale)};
   });
   showCaptions();
+  keepInSight();
   page.renderer.setSize(state.size || Math.min(Math.max(Math.round(size * scale), 96), 512));
   page.pictureStale = true;
+}
+
+// The picture stays at the top of a window that is high enough to show controls below it; what gets the focus is not
+// scrolled to where the picture covers it.
+const MOST_COVERED = 0.65;
+function keepInSight() {
+  const stage = document.querySelector('.stage'), height = Math.ceil(stage.getBoundingClientRect().height);
+  const stays = window.innerWidth > 900 && height <= MOST_COVERED * window.innerHeight;
+  stage.classList.toggle('stays', stays);
+  document.documentElement.style.scrollPadding = stays ? `${height + 8}px 0 8px` : '';
 }
 
 function showCaptions() {
