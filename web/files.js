@@ -42,6 +42,11 @@ function takeLight(name, environment) {
   page.renderer.setEnvironment(environment);
 }
 
+const WHAT_IS_READ = 'a model of trilobe (.json), a MERL measurement (.binary), a table with the header theta_i,phi_i,theta_o,phi_o,r,g,b in degrees (.csv), or light (.hdr)';
+
+// Whether bytes are letters: a MERL file begins with three numbers of four bytes, in which zeros are.
+const isText = bytes => bytes.every(byte => byte >= 32 || (byte >= 9 && byte <= 13));
+
 // `shown` follows. `second`: a model goes beside the one that was opened with it.
 async function openFile(file, second, shown) {
   try {
@@ -56,6 +61,8 @@ async function openFile(file, second, shown) {
       takeLight(file.name, parseRadiance(file.name, await file.arrayBuffer()));
     } else if (/theta_i/.test(head) || /\.csv$/i.test(file.name)) {
       takeMeasured(file.name, parseCsv(await file.text()));
+    } else if (isText(new Uint8Array(await file.slice(0, 400).arrayBuffer()))) {
+      throw new Error(`a text that is none of what this page reads: ${WHAT_IS_READ}. trilobe fit reads more tables`);
     } else {
       takeMeasured(file.name, parseMerl(await file.arrayBuffer()));
     }

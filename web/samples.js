@@ -113,7 +113,7 @@ export function parseCsv(text) {
   const names = (lines.shift()?.[0] ?? '').split(',').map(name => name.trim());
   const wanted = ['theta_i', 'phi_i', 'theta_o', 'phi_o', 'r', 'g', 'b'];
   const columns = wanted.map(name => names.indexOf(name));
-  if (columns.includes(-1)) throw new Error(`not a CSV file of samples: its header must have ${wanted.join(', ')}; other files can be fitted by the program`);
+  if (columns.includes(-1)) throw new Error(`no table that this page reads: its header must have ${wanted.join(', ')}; trilobe fit reads more tables`);
   const samples = [], azimuths = new Set();
   let leftOut = 0;
   for (const [line, number] of lines) {

@@ -117,6 +117,10 @@ std::vector<Column> Told(std::span<const Column> columns,
   return told;
 }
 
+// The beginning of a table, which is moved sideways, by keys too, where it is wider than the page.
+constexpr char kTable[] =
+    R"(<div class="scroll" tabindex="0" role="region" aria-label="Table"><table>)";
+
 // A number stays on its line.
 std::string TableCell(const std::string& text) {
   constexpr size_t kShort = 12;
@@ -125,7 +129,7 @@ std::string TableCell(const std::string& text) {
 
 std::string MethodsTable(std::span<const Column> all, std::span<const MethodSummary> summaries) {
   const std::vector<Column> columns = Told(all, summaries);
-  std::string html = "<div class=\"scroll\"><table><thead><tr><th>method</th>";
+  std::string html = std::string(kTable) + "<thead><tr><th>method</th>";
   for (const Column& column : columns) {
     html += "<th title=\"" + std::string(column.meaning) + "\">" + column.title + "</th>";
   }
@@ -166,7 +170,7 @@ std::vector<std::vector<std::string>> TimesRows(std::span<const StudyRun> runs) 
 }
 
 std::string HtmlOf(const std::vector<std::vector<std::string>>& rows) {
-  std::string html = "<div class=\"scroll\"><table><thead><tr>";
+  std::string html = std::string(kTable) + "<thead><tr>";
   for (const std::string& title : rows[0]) html += "<th>" + EscapedMarkup(title) + "</th>";
   html += "</tr></thead><tbody>\n";
   for (size_t k = 1; k < rows.size(); ++k) {
@@ -224,8 +228,7 @@ std::string RunsTable(const std::vector<StudyRun>& runs) {
       "start",   "E",          "above lowest", "gradient",  "ended", "iterations",
       "seconds", "held-out E", "ΔE",           "agreement", ""};
   std::string html =
-      "<details><summary>Every run</summary><div class=\"scroll\"><table><thead><tr>"
-      "<th>method</th>";
+      "<details><summary>Every run</summary>" + std::string(kTable) + "<thead><tr><th>method</th>";
   for (const char* const title : kTitles) html += "<th>" + std::string(title) + "</th>";
   html += "</tr></thead><tbody>\n";
   for (const StudyRun& run : runs) {

@@ -41,15 +41,28 @@ def wait_for(page: Any, expression: str, seconds: float = 60) -> None:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
+def launch() -> Iterator[Callable[[list[str]], Any]]:
+    """Starts a browser with these flags."""
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     chromium = shutil.which("chromium")
     if chromium is None:
         pytest.skip("chromium is not installed")
     with playwright.sync_playwright() as started:
-        launched = started.chromium.launch(executable_path=chromium, args=SOFTWARE)
-        yield launched
-        launched.close()
+        yield lambda flags: started.chromium.launch(executable_path=chromium, args=flags)
+
+
+@pytest.fixture(scope="session")
+def browser(launch: Callable[[list[str]], Any]) -> Iterator[Any]:
+    launched = launch(SOFTWARE)
+    yield launched
+    launched.close()
+
+
+@pytest.fixture(scope="session")
+def browser_without_webgl(launch: Callable[[list[str]], Any]) -> Iterator[Any]:
+    launched = launch(["--disable-3d-apis"])
+    yield launched
+    launched.close()
 
 
 @pytest.fixture(scope="session")

@@ -73,7 +73,8 @@ def test_pictures_and_charts_are_told_in_words(open_page: Open) -> None:
 def test_targets_are_large_enough(size: tuple[int, int], open_page: Open) -> None:
     page = open_page("plastic", size=size, size_of_picture=16)
     small = page.evaluate(
-        "Array.from(document.querySelectorAll('button, select, summary, input[type=checkbox], input[type=color]'))"
+        "Array.from(document.querySelectorAll('button, select, summary, input[type=checkbox], input[type=color],"
+        " input[type=range], .segments label'))"
         ".map(e => [e.getBoundingClientRect(), e]).filter(([r]) => r.width > 0 && Math.min(r.width, r.height) < 24)"
         ".map(([r, e]) => `${e.outerHTML.slice(0, 60)}: ${r.width} x ${r.height}`)")
     assert small == []

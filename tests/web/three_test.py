@@ -172,6 +172,16 @@ def test_the_page_shows_each_model_by_its_own(served: Any, fits: Path, tmp_path:
     assert redder[:, half:].min() < -40 and redder[:, half:].max() < 20
 
 
+def test_the_page_says_that_it_needs_a_network(browser: Any) -> None:
+    page = browser.new_page()
+    page.route("**/*", lambda route: route.fulfill(path=REPOSITORY / "web/three/index.html", content_type="text/html")
+               if route.request.url == HERE else route.abort())
+    page.goto(HERE)
+    assert "needs a network" in page.inner_text("p")
+    wait_for(page, "document.getElementById('said').textContent.startsWith('three.js does not come')")
+    page.close()
+
+
 def test_the_page_says_what_it_cannot_read(served: Any, tmp_path: Path) -> None:
     (tmp_path / "bad.glsl").write_text("void main() {}")
     page = served("?model=bad.glsl", {"bad.glsl": tmp_path / "bad.glsl"})
