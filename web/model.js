@@ -76,9 +76,9 @@ export function parseModel(text) {
     fail('not a model: the file is not JSON');
   }
   if (json?.format !== 'trilobe-model') fail(`not a model: key 'format' is not "trilobe-model"`);
+  if (json.wavelengths) fail(`a model of ${json.wavelengths.length} wavelengths; this page shows colours, which model.json of the same fit has`);
   if (![1, 2].includes(json.version)) fail(`key 'version' is ${json.version}; this page reads 1 and 2`);
   if (json.version === 1 && json.stretch !== undefined) fail(`key 'stretch' needs "version": 2`);
-  if (json.wavelengths) fail(`a model of ${json.wavelengths.length} wavelengths; this page shows colours, which model.json of the same fit has`);
   const anisotropic = json.kind === 'anisotropic';
   if (!anisotropic && json.kind !== 'isotropic') fail(`key 'kind' is neither "isotropic" nor "anisotropic"`);
   const lobes = json.lobes;

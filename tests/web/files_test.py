@@ -177,3 +177,42 @@ def test_what_was_not_measured_is_hatched(open_page: Open, scattered: Path) -> N
     columns = [int(x - part * radius) for part in (0.97, 0.7)]
     rim, inside = (shown[int(y) - 10 : int(y) + 10, left : left + 10] for left in columns)
     assert np.ptp(rim) > 60 > np.ptp(inside)
+
+
+def test_a_dropped_model_is_not_called_the_fit(open_page: Open, fits: Path) -> None:
+    page = open_page("plastic", size_of_picture=32)
+    assert "the fit:" in page.inner_text("#verdict") and page.inner_text("#fit-title") == "The fit"
+    drop(page, fits / "shot_silk/model.json")
+    finished(page)
+    wait_for(page, "document.querySelector('#verdict b') !== null && !trilobe.page.chartsStale")
+    wait_for(page, "document.getElementById('typical').textContent.includes('model.json is')")
+    page.focus("#canvas")
+    page.keyboard.press("Shift+ArrowUp")
+    assert "model.json:" in page.inner_text("#verdict")
+    assert page.inner_text("#fit-title") == "The model"
+    assert "ρ modelled" in page.inner_text("#numbers")
+    words = page.inner_text("main") + page.inner_text("header")
+    for word in ("The fit", "the fit ", "the fit:", "Fitted", "ρ fitted"):
+        assert word not in words, word
+
+
+def test_spectral_fits_show_their_wavelengths(fits: Path, browser: Any) -> None:
+    bands = range(400, 701, 50)
+    lines = ["theta_i,phi_i,theta_o,phi_o," + ",".join(f"{band}nm" for band in bands)]
+    for i in range(0, 76, 15):
+        for o in range(0, 76, 5):
+            for phi in range(0, 181, 20):
+                peak = 0.3 * math.exp(-((i - o) ** 2 + (180 - phi) ** 2 / 4) / 200)
+                lines.append(f"{i},0,{o},{phi}," + ",".join(f"{0.05 + (b - 400) / 1500 + peak:.5f}" for b in bands))
+    (fits / "red.csv").write_text("\n".join(lines))
+    run("fit", fits / "red.csv", "--spectral", "--lobes=1", "--max_iterations=3", f"--out={fits / 'red'}")
+    run("view", fits / "red/spectral.json", fits / "red.csv", f"--out={fits / 'red/spectral.html'}")
+    for name in ("view", "spectral"):
+        page = browser.new_page()
+        page.goto(f"file://{fits / f'red/{name}.html'}")
+        wait_for(page, "window.trilobe?.page.base !== null && !trilobe.page.chartsStale")
+        page.locator("#fit summary").click()
+        assert rows(page, "#facts")["spectra"] == ["7 wavelengths from 400 to 700 nm; shown are their colours"], name
+        page.set_input_files("#file", fits / "red/spectral.json")
+        wait_for(page, "document.querySelector('#message').textContent.includes('a model of 7 wavelengths')")
+        page.close()

@@ -13,7 +13,8 @@ from conftest import Open, run, wait_for
 FOCUSED = """() => {
   const e = document.activeElement;
   if (!e || e === document.body) return null;
-  const target = e.closest('.segments label') ?? e, box = target.getBoundingClientRect(), x = (box.left + box.right) / 2;
+  const target = e.closest('.segments label') ?? e, box = target.getBoundingClientRect();
+  const x = (box.left + box.right) / 2;
   const covered = [box.top + 3, (box.top + box.bottom) / 2, box.bottom - 3].some(y => {
     if (y < 0 || y >= innerHeight) return true;
     const hit = document.elementFromPoint(x, y);

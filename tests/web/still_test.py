@@ -1,4 +1,4 @@
-"""A page where the browser has no WebGL 2: all but the turning picture is there, and the picture is what the page holds."""
+"""A page without WebGL 2: all but the turning picture is there, and the picture is what the page holds."""
 
 from __future__ import annotations
 
