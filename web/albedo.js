@@ -8,14 +8,14 @@ const MOST_MISSING = 0.2;  // largest share of the light in unmeasured direction
 
 // At theta from the normal [rad], {fitted: [3], measured: [3] or null}. What was not measured is the fit's in both, so that
 // they differ by what is measured alone.
-function albedosAt(theta, measured) {
+function albedosAt(evaluate, theta, measured) {
   const wo = [Math.sin(theta), 0, Math.cos(theta)], fitted = [0, 0, 0], seen = [0, 0, 0];
   let known = 0, all = 0;
   for (let k = 0; k < albedoCells.length; k += 4) {
     const h = [albedoCells[k], albedoCells[k + 1], albedoCells[k + 2]], along = wo[0] * h[0] + wo[2] * h[2];
     const wi = h.map((x, a) => 2 * along * x - wo[a]);
     if (!(along > 0 && wi[2] > 0)) continue;
-    const weight = wi[2] * 4 * along * albedoCells[k + 3], {rho} = page.evaluate(wi, wo), other = measured?.(wi, wo);
+    const weight = wi[2] * 4 * along * albedoCells[k + 3], {rho} = evaluate(wi, wo), other = measured?.(wi, wo);
     const light = weight * (rho[0] + rho[1] + rho[2]);
     all += light;
     if (other) known += light;
@@ -27,18 +27,24 @@ function albedosAt(theta, measured) {
   return {fitted, measured: all > 0 && known >= (1 - MOST_MISSING) * all ? seen : null};
 }
 
-export const albedo = theta => albedosAt(theta, null).fitted;
+export const albedo = theta => albedosAt(page.evaluate, theta, null).fitted;
 
 // ---- Albedos over all angles, one at a time -----------------------------------------------------------------------
 
 export const ALBEDO_DEGREES = [...Array.from({length: 18}, (_, k) => 5 * k), 88];
 
-// Adds an angle to page.albedo, [{degrees, fitted, measured}...]; false where it has all.
+// Adds an angle to page.albedo, [{degrees, fitted, measured}...], or to that of a model kept in the charts; false where all
+// have all.
 export function continueAlbedo() {
   page.albedo ??= [];
   const done = page.albedo.length;
-  if (done === ALBEDO_DEGREES.length) return false;
+  if (done === ALBEDO_DEGREES.length) {
+    const kept = page.kept.find(({albedo}) => albedo.length < ALBEDO_DEGREES.length);
+    const degrees = ALBEDO_DEGREES[kept?.albedo.length];
+    kept?.albedo.push({degrees, ...albedosAt(kept.evaluate, (degrees * Math.PI) / 180, null)});
+    return kept !== undefined;
+  }
   const degrees = ALBEDO_DEGREES[done], rho = hasMeasured() && !hasSamples() ? page.measured.rho : null;
-  page.albedo.push({degrees, ...albedosAt((degrees * Math.PI) / 180, rho)});
+  page.albedo.push({degrees, ...albedosAt(page.evaluate, (degrees * Math.PI) / 180, rho)});
   return true;
 }

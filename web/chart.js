@@ -245,11 +245,10 @@ export class LineChart {
     this.svg.append(group);
     this.values.replaceChildren(element('b', {textContent: `${this.angle} ${+x.toFixed(1)}${this.unit}`}),
                                 ...read.map(({label, color, value}) => element('span', {}, swatch(color), `${label} ${short(value)}`)));
-    // The values stand beside the line, on the side with more room.
+    // The values stand below the plot, over its buttons, where they cover no curve; many of them move what is below.
+    this.values.classList.toggle('many', read.length > 6);
     const box = this.svg.getBoundingClientRect(), outer = this.figure.getBoundingClientRect();
-    const left = at < this.width / 2;
-    Object.assign(this.values.style, {top: `${box.top - outer.top + TOP}px`, left: left ? `${box.left - outer.left + at + 10}px` : 'auto',
-                                      right: left ? 'auto' : `${outer.right - box.right + this.width - at + 10}px`});
+    Object.assign(this.values.style, {top: `${box.bottom - outer.top}px`, left: `${box.left - outer.left}px`, width: `${box.width}px`});
   }
 
   zoomTo(range) {

@@ -1,6 +1,7 @@
 // Charts of the model's parts: curves of D, F and G, by lobe and channel.
 
 import {DEGREES, byId, element, pageColor, short} from './dom.js';
+import {keptCurves, pointsOf} from './kept.js';
 import {drawLight} from './light_charts.js';
 import {drawMap} from './map.js';
 import {FACTORS, tableIndex} from './model.js';
@@ -59,13 +60,10 @@ function curvesOf(factor) {
   const {model} = page, axis = model.axes[factor];
   return chosen(factor).map(([m, ...channels]) => {
     const numbers = channels.map(c => tableIndex(model.sharing[factor], m, c)), tables = numbers.map(t => model.tables[factor][t]);
-    const mean = e => tables.reduce((sum, table) => sum + table[e], 0) / tables.length;
-    const ofRing = a => Array.from({length: axis.phis}, (_, b) => mean(a * axis.phis + b)).reduce((x, y) => x + y, 0) / axis.phis;
     const untold = numbers.map(t => new Set((model.json.unobserved ?? model.json.dead)?.[factor]?.[t] ?? []));
     return {
       ...styleOfCurve(factor, m, channels),
-      points: axis.phis > 0 ? axis.theta.map((theta, a) => [theta, ofRing(a)])
-                            : Array.from(tables[0], (_, e) => [90 * ((e + 0.5) / axis.size) ** (factor === 'D' ? 2 : 1), mean(e)]),
+      points: pointsOf(axis, factor, tables),
       unknown: new Set(axis.phis > 0 ? [] : [...untold[0]].filter(e => untold.every(set => set.has(e)))),
     };
   });
@@ -80,7 +78,7 @@ function isSpread(series) {
 // ---- Drawing -----------------------------------------------------------------------------------------------------
 
 function drawFactor(factor, x, marks) {
-  const series = curvesOf(factor), known = factor === 'G' ? maxAngle() : Infinity, log = state.log[factor] ?? isSpread(series);
+  const series = [...curvesOf(factor), ...keptCurves(factor, byId('chart-lobe').value)], known = factor === 'G' ? maxAngle() : Infinity, log = state.log[factor] ?? isSpread(series);
   charts[factor].draw({series, x, y: log ? {log, decades: 7} : {min: 0}, marks, known});
   const at = ({points}, k) => `${short(points[k][1])} at ${short(points[k][0])}°`;
   byId(`chart-${factor.toLowerCase()}`).ariaLabel = `${factor} over ${{D: 'θh', F: 'θd', G: 'θ'}[factor]}. ` + series.map(curve => {

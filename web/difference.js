@@ -109,10 +109,12 @@ export function differencePoints({samples}, evaluate, phiD = null) {
   return {points, typical: mean(Math.abs), bias: mean(x => x)};
 }
 
+const twoDigits = x => String(+x.toPrecision(2));
+
 // In words: by how much the fit is brighter in the mean, and how far the darker of the two is below the brighter.
 export function differenceWords({typical, bias}, elsewhere, what = 'the fit') {
   if (!Number.isFinite(typical)) return '';
   const percent = 100 * (Math.exp(bias) - 1), apart = 100 * (1 - Math.exp(-typical));
-  const mean = Math.abs(percent) < 0.05 ? 'as bright' : `${Math.abs(percent).toPrecision(2)} % too ${percent < 0 ? 'dark' : 'bright'}`;
-  return `${elsewhere ? 'Elsewhere' : 'In the mean'} ${what} is ${mean}${elsewhere ? ' in the mean' : ''}; the darker of the two is typically ${apart.toPrecision(2)} % below the brighter.`;
+  const mean = Math.abs(percent) < 0.05 ? 'as bright' : `${twoDigits(Math.abs(percent))} % too ${percent < 0 ? 'dark' : 'bright'}`;
+  return `${elsewhere ? 'Elsewhere' : 'In the mean'} ${what} is ${mean}${elsewhere ? ' in the mean' : ''}; the darker of the two is typically ${twoDigits(apart)} % below the brighter.`;
 }

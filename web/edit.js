@@ -1,10 +1,11 @@
 // Changes of a model that can be undone: of each lobe whether it counts, its strength, tint and roughness; of all how
-// F rises; and the diffuse colour.
+// F rises; the diffuse colour; and tables by hand.
 
+import {applyHand, checkedHand} from './hand_edit.js';
 import {CHANNELS, copyModel, tableIndex} from './model.js';
 
 export function noEdit(model) {
-  return {lobes: model.s.map(() => ({on: true, gain: 1, tint: null, rough: 1})), diffuseOn: true, diffuse: null, rise: 1};
+  return {lobes: model.s.map(() => ({on: true, gain: 1, tint: null, rough: 1})), diffuseOn: true, diffuse: null, rise: 1, hand: []};
 }
 
 export function isEdited(edit, model) {
@@ -22,6 +23,7 @@ export function checkedEdit(edit, model) {
   clean.diffuseOn = edit.diffuseOn !== false;
   clean.diffuse = color(edit.diffuse);
   clean.rise = between(edit.rise, 0, 4, 1);
+  clean.hand = checkedHand(edit.hand, model);
   return clean;
 }
 
@@ -84,6 +86,7 @@ export function editedModel(base, edit, all = false) {
   if (edit.rise !== 1) {
     model.tables.F = base.tables.F.map(table => table.map(f => Math.max(0, table[0] + edit.rise * (f - table[0]))));
   }
+  applyHand(model, edit.hand);
   return model;
 }
 

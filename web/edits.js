@@ -3,6 +3,7 @@
 import {makeChartChoices} from './charts.js';
 import {byId, element, swatch} from './dom.js';
 import {editedModel, hexOf, isEdited, noEdit} from './edit.js';
+import {handRows} from './hand_edit.js';
 import {evaluatorOf} from './model.js';
 import {forget, lobeColor, lobeName, page, state} from './page_state.js';
 import {help} from './words.js';
@@ -106,6 +107,14 @@ export function makeEdits() {
     ...(base.lobes > 0 ? [slider('All lobes: rise of F', e => e.rise, (e, x) => (e.rise = x), [0, 4, 0.05])] : []),
     colorInput('Diffuse: diffuse', () => state.edit.diffuse ?? hexOf(base.d.map(x => x * Math.PI)), (e, x) => (e.diffuse = x)),
   ]));
+  if (base.lobes > 0) {
+    const {rows, refresh} = handRows(base, () => page.model, change => {
+      editTo(e => e.hand.push(change));
+      settle(null);
+    });
+    refreshes.push(refresh);
+    blocks.push(block('By hand', 'var(--muted)', rows));
+  }
   byId('edits').replaceChildren(...blocks);
   const chips = base.s.map((_, m) => {
     const label = chip(`lobe ${m + 1}`, lobeColor(m), () => state.edit.lobes[m].on, (e, on) => (e.lobes[m].on = on), lobeName(m));

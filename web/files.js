@@ -3,6 +3,7 @@
 import {byId, tell} from './dom.js';
 import {History, noEdit} from './edit.js';
 import {applyEdit, makeEdits} from './edits.js';
+import {keepModel} from './kept.js';
 import {parseMerl} from './measured.js';
 import {evaluatorOf, parseModel} from './model.js';
 import {forget, hasSamples, page, state} from './page_state.js';
@@ -47,16 +48,18 @@ const WHAT_IS_READ = 'a model of trilobe (.json), a MERL measurement (.binary), 
 // Whether bytes are letters: a MERL file begins with three numbers of four bytes, in which zeros are.
 const isText = bytes => bytes.every(byte => byte >= 32 || (byte >= 9 && byte <= 13));
 
-// `shown` follows. `second`: a model goes beside the one that was opened with it.
-async function openFile(file, second, shown) {
+// `shown` follows. Of models that are opened together, `before` came before: the second goes beside the first, and others
+// into the charts.
+async function openFile(file, before, shown) {
   try {
     if (file.size > 200e6) throw new Error('the file is larger than 200 MB');
     const head = await file.slice(0, 400).text(), first = head.trimStart();
     if (first.startsWith('{')) {
       if (file.size > 16e6) throw new Error('a model of more than 16 MB');
       const model = parseModel(await file.text());
-      if (second) takeModelBeside(file.name, model);
-      else takeModel(file.name, model);
+      if (before === 0) takeModel(file.name, model);
+      else if (before === 1) takeModelBeside(file.name, model);
+      else keepModel(file.name, model);
     } else if (head.startsWith('#?')) {
       takeLight(file.name, parseRadiance(file.name, await file.arrayBuffer()));
     } else if (/theta_i/.test(head) || /\.csv$/i.test(file.name)) {
@@ -78,8 +81,8 @@ async function openFile(file, second, shown) {
 
 export function listenToFiles(shown) {
   const openAll = async files => {
-    let second = false;
-    for (const file of files) second = (await openFile(file, second, shown)) || second;
+    let models = 0;
+    for (const file of files) models += (await openFile(file, models, shown)) ? 1 : 0;
   };
   byId('open').addEventListener('click', () => byId('file').click());
   byId('file').addEventListener('change', async () => {

@@ -2,7 +2,9 @@
 
 import {ALBEDO_DEGREES} from './albedo.js';
 import {DEGREES, byId, pageColor, short} from './dom.js';
-import {hasMeasured, hasSamples, lobeColor, maxAngle, page, referenceWord, state} from './page_state.js';
+import {keptAlbedos, keptSlices} from './kept.js';
+import {hasMeasured, hasSamples, isMeasuredAnisotropic, lobeColor, maxAngle, page, referenceWord, state} from './page_state.js';
+import {drawLobe} from './lobe.js';
 import {CHANNEL_COLORS, CHANNEL_NAMES, drawPolar} from './plots.js';
 import {samplesInPlane} from './samples.js';
 import {chartOf} from './state_chart.js';
@@ -19,7 +21,16 @@ function outgoingDegrees() {
   const all = [...Array.from({length: 90}, (_, k) => 2 * k - 89), ...near].filter(x => Math.abs(x) <= 89.5);
   return [...new Set(all)].sort((a, b) => a - b);
 }
-const outgoing = degrees => [Math.sin(degrees / DEGREES), 0, Math.cos(degrees / DEGREES)];
+// In the plane that the page shows, which contains the normal; the light's own plane is turned by lightPhi about it.
+function outgoing(degrees) {
+  const sine = Math.sin(degrees / DEGREES), phi = (state.lightPhi + state.planePhi) / DEGREES;
+  return [sine * Math.cos(phi), sine * Math.sin(phi), Math.cos(degrees / DEGREES)];
+}
+function incoming() {
+  const theta = state.thetaI / DEGREES, phi = state.lightPhi / DEGREES;
+  return [-Math.sin(theta) * Math.cos(phi), -Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
+}
+const planeWord = () => (state.planePhi === 0 ? 'the plane of incidence' : `the plane at ${state.planePhi}° from that of incidence`);
 
 // Curves of a channel each, fitted and measured: of rows [[degrees, rgb]...].
 function channelSeries(fitted, measured) {
@@ -32,10 +43,10 @@ function channelSeries(fitted, measured) {
 
 // {fitted: [[degrees, {rho, lobes}]...], measured: [[degrees, rho]...], known: whether a direction was measured}.
 function inPlane() {
-  const {measured} = page, theta = state.thetaI / DEGREES, wi = [-Math.sin(theta), 0, Math.cos(theta)];
+  const {measured} = page, theta = state.thetaI / DEGREES, wi = incoming();
   const fitted = outgoingDegrees().map(degrees => [degrees, page.evaluate(wi, outgoing(degrees))]);
   if (hasSamples()) {
-    return {fitted, measured: samplesInPlane(measured, theta), known: degrees => Math.max(Math.abs(degrees), state.thetaI) <= maxAngle()};
+    return {fitted, measured: samplesInPlane(measured, theta, state.planePhi / DEGREES), known: degrees => Math.max(Math.abs(degrees), state.thetaI) <= maxAngle()};
   }
   const found = !hasMeasured() ? [] : Array.from({length: 90}, (_, k) => 2 * k - 89)
     .map(degrees => [degrees, measured.rho(wi, outgoing(degrees))]).filter(([, rho]) => rho);
@@ -44,12 +55,13 @@ function inPlane() {
 }
 
 function drawSlice({fitted, measured}) {
-  const series = channelSeries(fitted.map(([degrees, {rho}]) => [degrees, rho]), measured);
+  const kept = keptSlices(incoming(), fitted.map(([degrees]) => [degrees, outgoing(degrees)]));
+  const series = [...channelSeries(fitted.map(([degrees, {rho}]) => [degrees, rho]), measured), ...kept];
   const log = state.log.slice, known = hasMeasured() && !hasSamples() ? Infinity : maxAngle();
   slice.draw({series, x: {min: -90, max: 90, ticks: PLANE_TICKS}, y: log ? {log, decades: 6} : {min: 0}, known: known < 90 ? known : Infinity,
-              marks: [{x: state.thetaI, text: 'mirror'}]});
+              marks: state.planePhi === 0 ? [{x: state.thetaI, text: 'mirror'}] : []});
   const brightest = fitted.reduce((a, b) => (b[1].rho[1] > a[1].rho[1] ? b : a));
-  byId('slice').ariaLabel = `ρ in the plane of incidence over θo, light at ${Math.round(state.thetaI)}°: fitted most in green at ` +
+  byId('slice').ariaLabel = `ρ in ${planeWord()} over θo, light at ${Math.round(state.thetaI)}°: fitted most in green at ` +
     `${short(brightest[0])}°, ${short(brightest[1].rho[1])} /sr; ${measured.length} ${referenceWord()} values. Arrows read values.`;
 }
 
@@ -63,7 +75,7 @@ function drawSide({fitted, measured, known}) {
   byId('polar-measured').hidden = dots.length === 0;
   byId('polar-word').textContent = referenceWord();
   const brightest = whole.reduce((a, b) => (b[1] > a[1] ? b : a));
-  byId('polar').ariaLabel = `Reflected light in the plane of incidence, light from ${Math.round(state.thetaI)}°: ` +
+  byId('polar').ariaLabel = `Reflected light in ${planeWord()}, light from ${Math.round(state.thetaI)}°: ` +
     `most at ${short(brightest[0])}°, mean ρ cos θo ${short(brightest[1])} /sr; ${dots.length} measured values`;
 }
 
@@ -81,7 +93,7 @@ export function drawAlbedo() {
   const rows = page.albedo ?? [], measured = rows.filter(row => row.measured);
   byId('albedo-why').textContent = whyAlbedo(rows, measured);
   if (rows.length < 2) return;
-  const series = channelSeries(rows.map(row => [row.degrees, row.fitted]), measured.map(row => [row.degrees, row.measured]));
+  const series = [...channelSeries(rows.map(row => [row.degrees, row.fitted]), measured.map(row => [row.degrees, row.measured])), ...keptAlbedos()];
   const high = Math.max(1.02, ...series.flatMap(s => s.points.map(p => p[1]))), log = state.log.albedo;
   albedoChart.draw({series, x: {min: 0, max: 90, ticks: [0, 30, 60, 90].map(v => [v, `${v}°`])}, y: log ? {log, max: high} : {min: 0, max: high},
                     known: maxAngle(), lines: [{y: 1}], marks: page.point?.angles ? [{x: page.point.angles.theta_o * DEGREES, text: 'θo'}] : []});
@@ -93,8 +105,13 @@ export function drawAlbedo() {
 export function drawLight() {
   const plane = inPlane();
   byId('plane-angle').textContent = `${Math.round(state.thetaI)}°`;
+  byId('plane-phi-angle').textContent = `${state.planePhi}°`;
+  byId('light-phi-angle').textContent = `${state.lightPhi}°`;
+  byId('light-phi-row').hidden = !page.model.anisotropic && !isMeasuredAnisotropic();
+  for (const place of document.querySelectorAll('.plane-word')) place.textContent = planeWord();
   byId('plane-none').hidden = !hasMeasured() || plane.measured.length > 0;
   drawSide(plane);
   drawSlice(plane);
+  drawLobe();
   drawAlbedo();
 }

@@ -8,6 +8,8 @@ import {History, checkedEdit, editedModel, noEdit} from './edit.js';
 import {listenToEdits, makeEdits, onEdit, showEdits} from './edits.js';
 import {probeEnvironment, studioEnvironment} from './environment.js';
 import {visibilityOf} from './judge.js';
+import {listenToKept} from './kept.js';
+import {listenToLobe} from './lobe.js';
 import {listenToMap} from './map.js';
 import {evaluatorOf, formatModel, isNearlyDiffuse, parseModel} from './model.js';
 import {DRAGS, LIGHTS, VIEWS, contents, edited, forget, hasSamples, hasViews, isModelBeside, isPictured, lampDirection, maxAngle, modelFileName, ownTitle, page, referenceTitle, state, stateText, takeState, whatTheLinkHolds} from './page_state.js';
@@ -18,6 +20,9 @@ import {Renderer} from './renderer.js';
 import {showFacts, showVerdict} from './said.js';
 import {decodeSamples, usualThetaI} from './samples.js';
 import {listenToHelp} from './words.js';
+
+// Sliders of the plane in which light is shown, and what they set.
+const PLANES = [['polar-theta', 'thetaI'], ['light-phi', 'lightPhi'], ['plane-phi', 'planePhi']];
 
 function makeSegments(id, entries, key, change) {
   const legend = byId(id).querySelector('legend');
@@ -66,7 +71,7 @@ function showControls() {
   byId('exposure').value = state.exposure;
   byId('stops').textContent = state.exposure > 0 ? `+${state.exposure}` : state.exposure;
   byId('wipe').value = state.wipe;
-  byId('polar-theta').value = state.thetaI;
+  for (const [id, key] of PLANES) byId(id).value = state[key];
 }
 
 function applyTheme() {
@@ -117,10 +122,12 @@ function listenToControls() {
     applyObject();
   });
   byId('turntable').addEventListener('change', applyObject);
-  byId('polar-theta').addEventListener('input', () => {
-    state.thetaI = Number(byId('polar-theta').value);
-    page.chartsStale = true;
-  });
+  for (const [id, key] of PLANES) {
+    byId(id).addEventListener('input', () => {
+      state[key] = Number(byId(id).value);
+      page.chartsStale = true;
+    });
+  }
   for (const id of ['disc-lobe', 'chart-lobe', 'chart-channel']) byId(id).addEventListener('change', () => (page.chartsStale = true));
   byId('save').addEventListener('click', () => {
     download(formatModel(editedModel(page.base, state.edit), edited() ? 'in a page' : null), 'application/json', `${modelFileName()}.json`);
@@ -148,6 +155,8 @@ function listen() {
   listenToControls();
   listenToPointer();
   listenToEdits();
+  listenToKept();
+  listenToLobe();
   listenToMap();
   listenToHelp();
   listenToFiles(filesChanged);

@@ -19,7 +19,7 @@ export const DRAGS = [['light', 'Light'], ['object', 'Object']];
 // Settings, which a link holds.
 export const state = {
   view: 'fitted', object: 'sphere', light: 'environment', lamp: [-0.35, 0.4], around: 0, turn: [0, 0], exposure: 0, wipe: 0.5,
-  theme: null, size: 0, edit: null, thetaI: 45, phiD: null, drag: 'light',
+  theme: null, size: 0, edit: null, thetaI: 45, planePhi: 0, lightPhi: 0, lobeTurn: 30, phiD: null, drag: 'light',
   log: {D: true, F: null, G: null, slice: true, albedo: false, trace: true},  // null: by the values
 };
 
@@ -29,7 +29,7 @@ export const state = {
 export const page = {
   base: null, model: null, evaluate: null, measured: null, environment: null, renderer: null, history: null,
   modelFile: {name: contents.name, dropped: false}, measuredFile: contents.measured ? {name: contents.source, dropped: false} : null,
-  lightFile: null, point: null, dragging: null, seen: null, heat: null, heatAt: null, albedo: null,
+  lightFile: null, point: null, dragging: null, seen: null, heat: null, heatAt: null, albedo: null, kept: [],
   pictureStale: true, chartsStale: true,
 };
 
@@ -45,6 +45,7 @@ export function drawnParts() {
   return {measured, fitted, difference: measured && fitted && isPictured()};
 }
 export const isModelBeside = () => page.measured?.kind === 'model';
+export const isMeasuredAnisotropic = () => page.measured?.kind === 'nodes' || Boolean(page.measured?.model?.anisotropic);
 export const edited = () => isEdited(state.edit, page.base);
 export const lobesText = model => `${model.lobes} ${model.lobes === 1 ? 'lobe' : 'lobes'}`;
 export const lobeName = m => `lobe ${m + 1}${isNearlyDiffuse(page.base, m) ? ' (nearly diffuse)' : ''}`;
@@ -98,7 +99,7 @@ export function stateText() {
 }
 
 export function whatTheLinkHolds() {
-  const dropped = [...droppedFiles(), ...(page.lightFile ? [page.lightFile.name] : [])];
+  const dropped = [...droppedFiles(), ...[page.lightFile, ...page.kept].filter(Boolean).map(({name}) => name)];
   return dropped.length === 0 ? 'it opens this page as it looks now'
     : `it holds the settings, but not ${dropped.join(' and ')}, to be dropped on the page again`;
 }
@@ -123,6 +124,9 @@ export function takeState(text) {
     number('wipe', 0, 1);
     number('size', 0, 512);
     number('thetaI', 0, 85);
+    number('planePhi', 0, 175);
+    number('lightPhi', 0, 355);
+    number('lobeTurn', -180, 180);
     number('phiD', 0, 175);
     for (const key of Object.keys(state.log)) if (typeof given.log?.[key] === 'boolean') state.log[key] = given.log[key];
     const dropped = Array.isArray(given.dropped) ? given.dropped.filter(name => typeof name === 'string') : [];

@@ -123,7 +123,7 @@ export function becomeStill(why) {
   byId('keys').textContent = 'Point at the sphere to look closer, or move the point by the arrow keys.';
   byId('still-why').hidden = false;
   byId('still-why').textContent = `The picture stands still here, as ${why}: neither object nor light can be moved. All else works. ` +
-    (contents.spheres ? 'It is the one that the program drew.' : 'The page holds none that the program drew; one that a newer trilobe writes does.');
+    (contents.spheres ? 'The program drew what is shown.' : 'The page holds none that the program drew; one that a newer trilobe writes does.');
 }
 
 // ---- Frame by frame ----------------------------------------------------------------------------------------------

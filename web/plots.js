@@ -11,7 +11,7 @@ function styleOf(canvas) {
           strong: style.getPropertyValue('--text').trim() || '#111', surface: style.getPropertyValue('--surface').trim() || '#fff'};
 }
 
-function prepare(canvas) {
+export function prepare(canvas) {
   const scale = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
   if (width === 0) return null;
   const w = Math.round(width * scale), h = Math.round(height * scale);
@@ -163,7 +163,7 @@ export function drawPolar(canvas, curves, thetaI, known) {
     context.beginPath();
     context.arc(cx, cy, radius * Math.cbrt(part), Math.PI, 2 * Math.PI);
     context.stroke();
-    context.fillText(String(+(part * most).toPrecision(2)), cx + 3, cy - radius * Math.cbrt(part));
+    context.fillText(`${+(part * most).toPrecision(2)} /sr`, cx + 3, cy - radius * Math.cbrt(part));
   }
   context.beginPath();
   context.moveTo(cx - radius - 8, cy);

@@ -1,7 +1,7 @@
 // Actions of the pointer and the keys on the picture.
 
 import {byId, tell} from './dom.js';
-import {page, state} from './page_state.js';
+import {isMeasuredAnisotropic, page, state} from './page_state.js';
 import {applyLight, applyObject, placeOf} from './picture.js';
 import {lookAgain, lookAt} from './readout.js';
 
@@ -13,7 +13,7 @@ function moveLine(at) {
 
 function turnObject(by) {
   state.turn = [state.turn[0] + by[0], state.turn[1] + by[1]];
-  if (state.object === 'sphere' && !page.model.anisotropic && page.measured?.kind !== 'nodes' && !page.measured?.model?.anisotropic) {
+  if (state.object === 'sphere' && !page.model.anisotropic && !isMeasuredAnisotropic()) {
     state.turn = [0, 0];
     tell('A sphere of this material looks alike from all sides; choose another object to turn it.', true);
     return;

@@ -49,14 +49,15 @@ export function nearestSample({samples, anisotropic}, wi, wo) {
   return best && {degrees: Math.acos(Math.min(most, 1)) / DEGREE, sample: best};
 }
 
-// Samples in the plane of incidence with the light at `thetaI` [rad]: [[theta_o, rho]...], theta_o [degrees] positive
-// on the side of the mirror direction. `within` [rad] of both.
-export function samplesInPlane({samples}, thetaI, within = 2 * DEGREE) {
-  const found = [];
+// Samples with the light at `thetaI` [rad] in the plane that is turned by `phi` [rad] from that of incidence, to either
+// side: [[theta_o, rho]...], theta_o [degrees] positive on the side of the mirror direction. `within` [rad] of both.
+export function samplesInPlane({samples}, thetaI, phi = 0, within = 2 * DEGREE) {
+  const found = [], turned = phi <= Math.PI / 2 ? phi : Math.PI - phi, forward = phi <= Math.PI / 2;
   for (const {theta_i, theta_o, between, rho} of samples) {
     for (const [i, o] of theta_i === theta_o ? [[theta_i, theta_o]] : [[theta_i, theta_o], [theta_o, theta_i]]) {
-      if (Math.abs(i - thetaI) > within || Math.sin(o) * Math.sin(between) > Math.sin(within)) continue;
-      found.push([(between > Math.PI / 2 ? o : -o) / DEGREE, rho]);
+      const mirrored = between > Math.PI / 2, off = Math.abs((mirrored ? Math.PI - between : between) - turned);
+      if (Math.abs(i - thetaI) > within || Math.sin(o) * Math.sin(off) > Math.sin(within)) continue;
+      found.push([(mirrored === forward ? o : -o) / DEGREE, rho]);
     }
   }
   return found;

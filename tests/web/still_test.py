@@ -58,7 +58,7 @@ def test_all_but_the_turning_picture_is_there(open_still: Callable[..., Any], pa
     wait_for(page, "trilobe.page.heat !== null")
     assert page.locator("#views input").count() == 5
     said = page.inner_text("#still-why")
-    assert "no WebGL 2" in said and "the one that the program drew" in said
+    assert "no WebGL 2" in said and "The program drew what is shown." in said
     for control in ("#object", "#lights input", "#drags input", "#exposure", "#turntable"):
         assert page.locator(control).first.is_disabled(), control
     # The model is edited, and saved.
