@@ -225,3 +225,144 @@ def test_words_are_explained(open_page: Open) -> None:
     assert shown.is_visible()
     page.keyboard.press("Escape")
     assert shown.count() == 0
+
+
+def test_a_log_axis_has_two_labels(open_page: Open) -> None:
+    page = open_page("plastic", size_of_picture=16, log=dict.fromkeys(("D", "F", "G", "slice", "albedo"), True))
+    wait_for(page, f"{DRAWN} && trilobe.page.albedo?.length === 19")
+    numbers = ("Array.from(document.querySelectorAll('#{} text[text-anchor=end]'))"
+               ".filter(t => t.getAttribute('x') === '39').map(t => t.textContent)")
+    for chart in ("chart-d", "chart-f", "chart-g", "slice", "albedo"):
+        assert page.locator(f"#{chart}").locator("xpath=ancestor::figure").locator("input").is_checked()
+        page.focus(f"#{chart}")
+        for zoom in range(6):
+            found = page.evaluate(numbers.format(chart))
+            assert len(found) >= 2 and len(set(found)) == len(found), f"{chart}, {zoom}: {found}"
+            page.keyboard.press("+")
+
+
+def test_the_polar_chart_says_its_radius(open_page: Open) -> None:
+    page = open_page("plastic", size_of_picture=16)
+    caption = page.locator("#polar").locator("xpath=ancestor::figure").locator("figcaption").inner_text()
+    assert "the radius is the cube root of the mean ρ cos θo" in caption
+
+
+@pytest.mark.usefixtures("twelve")
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
+def test_values_cover_no_curve(size: tuple[int, int], open_page: Open) -> None:
+    for name, many in (("plastic", False), ("twelve", True)):
+        page = open_page(name, size=size, size_of_picture=16)
+        if many:
+            choose(page, "#chart-channel", "each")
+        wait_for(page, DRAWN)
+        for chart in ("chart-d", "chart-f", "chart-g", "slice"):
+            page.locator(f"#{chart}").hover(position={"x": 120, "y": 80})
+            box = page.locator(".values:visible").bounding_box()
+            charts = page.evaluate("Array.from(document.querySelectorAll('figure svg, figure canvas'), e =>"
+                                   " e.getBoundingClientRect().toJSON()).filter(r => r.width > 0)")
+            for other in charts:
+                beside = (box["x"] >= other["right"] or box["x"] + box["width"] <= other["x"]
+                          or box["y"] >= other["bottom"] - 1 or box["y"] + box["height"] <= other["y"] + 1)
+                assert beside, f"{name}: values of {chart}"
+
+
+def values_of_slice(page: Any, label: str) -> dict[float, float]:
+    lines = saved(page, "ρ in the plane of incidence as CSV").splitlines()[1:]
+    rows = [line.rsplit(",", 3)[1:] for line in lines if line.startswith(f'"{label}"')]
+    return {float(x): float(y) for x, y, _ in rows}
+
+
+def test_the_plane_is_turned(open_page: Open, fits: Path, tmp_path: Path) -> None:
+    page = open_page("plastic", size_of_picture=16)
+    page.fill("#polar-theta", "40")
+    page.fill("#plane-phi", "30")
+    wait_for(page, f"{DRAWN} && document.getElementById('plane-phi-angle').textContent === '30°'")
+    assert "the plane at 30° from that of incidence" in page.inner_text("#light")
+    assert "mirror" not in page.locator("#slice").text_content()
+    fitted, measured = values_of_slice(page, "green"), values_of_slice(page, "measured, green")
+    # The program's own values there.
+    at = [degrees for degrees in fitted if 5 < abs(degrees) < 70][::7]
+    rows = [f"40,180,{abs(x)},{30 if x > 0 else 210}" for x in at]
+    (tmp_path / "at.csv").write_text("\n".join(["theta_i,phi_i,theta_o,phi_o", *rows]))
+    run("convert", fits / "plastic/model.json", f"--at={tmp_path}/at.csv", f"--out={tmp_path}/values.csv")
+    header, *lines = [line for line in (tmp_path / "values.csv").read_text().splitlines() if not line.startswith("#")]
+    green = header.split(",").index("g")
+    assert [fitted[x] for x in at] == pytest.approx([float(line.split(",")[green]) for line in lines], rel=2e-3)
+    near = [fitted[x] / measured[x] for x in measured if abs(x) < 60]
+    assert len(near) > 30 and abs(np.median(near) - 1) < 0.1
+    # The light's azimuth counts for anisotropic models alone.
+    assert page.locator("#light-phi-row").is_hidden()
+    page = open_page("shot_silk", size_of_picture=16)
+    wait_for(page, DRAWN)
+    before = values_of_slice(page, "green")
+    page.fill("#light-phi", "90")
+    wait_for(page, f"{DRAWN} && document.getElementById('light-phi-angle').textContent === '90°'")
+    assert values_of_slice(page, "green") != before
+
+
+def test_many_models_are_in_the_charts(open_page: Open, fits: Path, tmp_path: Path) -> None:
+    page = open_page("plastic", size_of_picture=16)
+    for name in ("second", "third", "fourth"):
+        model = json.loads((fits / "plastic/model.json").read_text())
+        model["D"] = [[2 * v for v in table] for table in model["D"]] if name == "fourth" else model["D"]
+        (tmp_path / f"{name}.json").write_text(json.dumps(model))
+    page.set_input_files("#file", [tmp_path / f"{name}.json" for name in ("second", "third", "fourth")])
+    wait_for(page, "document.querySelector('#message').textContent === 'Opened fourth.json.'")
+    page.locator("input[aria-label='Lobe 1: strength']").fill("2")
+    page.click("#keep")
+    wait_for(page, f"{DRAWN} && trilobe.page.kept.length === 2 && trilobe.page.kept.every(k => k.albedo.length === 19)")
+    names = ["fourth.json", "second.json, edited"]
+    for chart in ("chart-d", "chart-f", "chart-g", "slice", "albedo"):
+        assert labels(page, chart)[-2:] == names, chart
+    lines = [line.split(",") for line in saved(page, "D over theta h as CSV").splitlines()]
+    own = [float(line[2]) for line in lines if line[0] == '"lobe 1"']
+    kept = [float(line[2]) for line in lines if line[0] == '"fourth.json: lobe 1"']
+    assert kept == pytest.approx([2 * v for v in own], rel=1e-5)
+    page.click("button[aria-label='Remove fourth.json from the charts']")
+    wait_for(page, DRAWN)
+    assert labels(page, "slice")[-1] == names[1] and "fourth.json" not in labels(page, "slice")
+    page.click("#link")
+    wait_for(page, "document.querySelector('#message').textContent.includes('edited')")
+
+
+def test_a_table_is_changed_by_hand(open_page: Open, fits: Path) -> None:
+    page = open_page("plastic", size_of_picture=16)
+    table = json.loads((fits / "plastic/model.json").read_text())["G"][1]
+    page.select_option("#hand-table", label="G of lobe 2")
+    page.fill("#hand-theta", "30.5")
+    assert float(page.input_value("#hand-value")) == pytest.approx(table[30], rel=1e-3)
+    page.fill("#hand-width", "4")
+    page.fill("#hand-value", "2")
+    page.keyboard.press("Enter")
+    wait_for(page, DRAWN)
+    changed = page.evaluate("Array.from(trilobe.model.tables.G[1])")
+    assert changed[30] == pytest.approx(2, abs=1e-6)
+    assert changed[32] == pytest.approx(table[32] + 0.5 * (2 - table[30]), rel=1e-5)
+    assert changed[:27] == pytest.approx(table[:27]) and changed[34:] == pytest.approx(table[34:])
+    with page.expect_download() as download:
+        page.click("#save")
+    assert json.loads(Path(download.value.path()).read_text())["G"][1][30] == pytest.approx(2, abs=1e-6)
+    page.click("#link")
+    wait_for(page, "location.hash.length > 1 && document.querySelector('#message').textContent !== ''")
+    address = page.url
+    page.goto("about:blank")
+    page.goto(address)
+    finished(page)
+    assert page.evaluate("trilobe.model.tables.G[1][30]") == pytest.approx(2, abs=1e-6)
+    page.click("#reset")
+    assert page.evaluate("Array.from(trilobe.model.tables.G[1])") == pytest.approx(table)
+
+
+def test_the_lobe_is_seen_in_space(open_page: Open) -> None:
+    page = open_page("plastic", size_of_picture=16)
+    wait_for(page, DRAWN)
+    assert "at most" in page.evaluate("document.getElementById('lobe').ariaLabel")
+    drawn = "document.getElementById('lobe').toDataURL()"
+    first = page.evaluate(drawn)
+    page.focus("#lobe")
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("trilobe.state.lobeTurn") == 40 and page.evaluate(drawn) != first
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate(drawn) == first
+    page.fill("#polar-theta", "70")
+    wait_for(page, f"{drawn} !== {json.dumps(first)}")
