@@ -49,7 +49,7 @@ function compare() {
   const common = element('p', {className: 'hint', textContent: 'Below each pair, its model under one light, with the exposure of the first, and how far it is from the first (white: not seen).'});
   const entries = chosen.map((figure, k) => ({...fits[figures.indexOf(figure)], figure: copies[k]})).filter(({model}) => model);
   compared.replaceChildren(...(entries.length > 1 ? [common] : []), ...copies);
-  if (entries.length > 1) drawCompared(entries).catch(error => (common.textContent = error.message));
+  if (entries.length > 1) drawCompared(entries).catch(error => (common.textContent = `The models are not drawn under one light, as ${error.message}; above are the pictures of the fits.`));
   for (const figure of figures) {
     const box = figure.querySelector('input');
     box.disabled = chosen.length >= 4 && !box.checked;

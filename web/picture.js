@@ -16,7 +16,7 @@ export function layout() {
   const picture = byId('picture'), canvas = byId('canvas'), width = picture.clientWidth;
   const scale = Math.min(window.devicePixelRatio || 1, 2), gap = 14;
   const modes = state.view === 'side' ? ['measured', 'fitted', 'difference'] : [state.view];
-  const columns = modes.length === 1 ? 1 : width < 460 ? 2 : 3, caption = columns === 2 ? 62 : 46;  // one more line
+  const columns = modes.length === 1 ? 1 : width < 460 ? 2 : 3, caption = columns === 1 || width / columns > 220 ? 46 : 62;  // one more line
   if (width === 0) return;  // not on a screen
   const size = Math.floor(Math.min((width - gap * (columns + 1)) / columns, modes.length === 1 ? 560 : 620,
                                    Math.max(window.innerHeight * 0.46, 220)));
