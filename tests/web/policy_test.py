@@ -63,7 +63,7 @@ def network() -> Iterator[Network]:
 
 @pytest.mark.parametrize("kind", ["view", "index"])
 def test_nothing_foreign_runs_or_loads(kind: str, fits: Path, browser: Any, network: Network) -> None:
-    page_of = {"view": fits / "plastic/page.html", "index": fits / "index.html"}
+    page_of = {"view": fits / "plastic/of_the_model.html", "index": fits / "index.html"}
     run("view", fits / "plastic/model.json", f"--out={page_of['view']}")
     page = browser.new_page()
     complaints: list[str] = []
