@@ -135,9 +135,7 @@ export class Renderer {
     return this.mirror;
   }
 
-  tablesOf(packed) {
-    return this.texture(this.gl.RGBA32F, TABLE_WIDTH, packed.rows, this.gl.FLOAT, packed.data);
-  }
+  tablesOf({rows, data}) { return this.texture(this.gl.RGBA32F, TABLE_WIDTH, rows, this.gl.FLOAT, data); }
   modelText(packed) {
     return packed.preamble + this.text('bsdf.glsl') +
       'vec4 material(vec3 wi, vec3 wo) { return vec4(trilobe_eval(wi, wo), 1.0); }\n' + this.text('light.glsl');
@@ -284,8 +282,8 @@ export class Renderer {
       [side.textures[2], side.textures[side.last]] = [side.textures[side.last], side.textures[2]];
       [side.targets[2], side.targets[side.last]] = [side.targets[side.last], side.targets[2]];
     }
-    const {shown} = this;
-    if (!shown || shown.content !== level.content || shown.size <= level.size || level.size === this.size) this.present(level);
+    const {shown, size} = this;
+    if (shown?.content !== level.content || shown.size <= level.size || level.size === size) this.present(level);
   }
 
   present(level) {
