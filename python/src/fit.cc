@@ -23,6 +23,7 @@
 
 #include "core/algebra/openblas.h"
 #include "core/base/json_text.h"
+#include "core/system/evaluation_count.h"
 #include "core/system/process.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
@@ -79,6 +80,7 @@ struct Outcome {
   std::vector<double> parameters;
   std::vector<IterationRecord> trace;
   bool interrupted = false;
+  int64_t values = 0, derivatives = 0;  // how often E and its derivatives were computed
 };
 
 OptionValue ValueOf(const nb::dict& options, const std::string& name, const OptionValue& like) {
@@ -217,7 +219,13 @@ Outcome RunFit(const Measured& measured, const NamedValues& options,
       Ask(callback, record, model, running);
     };
   }
-  FitResult fit = Fit(*data, fit_options);
+  EvaluationCount count;
+  FitResult fit = [&] {
+    const CountEvaluations counting(&count);
+    return Fit(*data, fit_options);
+  }();
+  outcome.values = count.values;
+  outcome.derivatives = count.derivatives;
   TellOfLimit(*running, &fit);
   outcome.interrupted = fit.interrupted;
   if (!outcome.begun) return outcome;
@@ -302,6 +310,8 @@ void BindFit(nb::module_* module) {
   nb::class_<Outcome>(*module, "Outcome", "What a fit has come to.")
       .def_ro("begun", &Outcome::begun)
       .def_ro("interrupted", &Outcome::interrupted)
+      .def_ro("values", &Outcome::values)
+      .def_ro("derivatives", &Outcome::derivatives)
       .def_prop_ro("model_text",
                    [](const Outcome& self) {
                      return nb::bytes(self.model_text.data(), self.model_text.size());

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/system/evaluation_count.h"
 #include "trilobe/core/base/check.h"
 
 namespace trilobe {
@@ -45,7 +46,8 @@ void RunOnThreads(int count, int num_threads, const std::function<void(int)>& wo
   std::atomic<int> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
-  const auto run = [&] {
+  const auto run = [&, count_here = CountHere()] {
+    const CountEvaluations counting(count_here);
     try {
       for (int i = next++; i < count; i = next++) work(i);
     } catch (...) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/system/evaluation_count.h"
 #include "model/measurement/join_samples.h"
 #include "model/measurement/sample_numbers.h"
 #include "model/objective/batch_evaluator.h"
@@ -426,6 +427,7 @@ std::shared_ptr<const FoldedSamples> Objective::folded_samples() const {
 
 double Objective::Value(const FactorModel& model) const {
   CheckSameSpec(model.spec(), spec_);
+  CountValues(1);
   if (folded() != nullptr) return FoldedValue(*folded(), model, num_threads_);
   if (const auto part = prepared_->Part()) return FoldedValue(*part, model, num_threads_);
   return FoldedValue(*folded_samples(), model, num_threads_);

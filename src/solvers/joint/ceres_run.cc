@@ -143,8 +143,9 @@ void CeresParameters::SetBounds(std::span<double> block, ceres::Problem* problem
   }
 }
 
-void MinimizeWithCeres(ceres::Solver::Options options, const std::function<CeresPoint()>& current,
-                       ceres::Problem* problem, Run* run) {
+ceres::Solver::Summary MinimizeWithCeres(ceres::Solver::Options options,
+                                         const std::function<CeresPoint()>& current,
+                                         ceres::Problem* problem, Run* run) {
   Recorder recorder(current, run);
   options.callbacks.push_back(&recorder);
 
@@ -166,6 +167,7 @@ void MinimizeWithCeres(ceres::Solver::Options options, const std::function<Ceres
   phases.evaluating +=
       summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
   phases.linear_algebra += summary.linear_solver_time_in_seconds;
+  return summary;
 }
 
 }  // namespace trilobe

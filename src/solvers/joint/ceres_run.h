@@ -58,9 +58,11 @@ struct CeresPoint {
 // Falls back to one thread if the system gives no more. The cost must be E up to a constant factor.
 // `current` returns the model of the blocks; the run records it after each iteration of Ceres, also
 // after rejected steps. Only the run's stopping test applies. If Ceres fails earlier, the reason is
-// kNoDecrease, with Ceres' message in a note. Adds Ceres' times to the run's phases.
-void MinimizeWithCeres(ceres::Solver::Options options, const std::function<CeresPoint()>& current,
-                       ceres::Problem* problem, Run* run);
+// kNoDecrease, with Ceres' message in a note. Adds Ceres' times to the run's phases, and returns
+// Ceres' summary.
+ceres::Solver::Summary MinimizeWithCeres(ceres::Solver::Options options,
+                                         const std::function<CeresPoint()>& current,
+                                         ceres::Problem* problem, Run* run);
 
 }  // namespace trilobe
 

@@ -1,5 +1,6 @@
 #include <optional>
 
+#include "core/system/evaluation_count.h"
 #include "solvers/joint/ceres_run.h"
 #include "solvers/joint/plain_problem.h"
 #include "trilobe/solvers/run.h"
@@ -26,9 +27,12 @@ class LmPlain : public Solver {
     LinearSolver& linear_solver = run.summary().used.linear_solver;
     linear_solver = problem->Choose(linear_solver);
     if (run.Start()) {
-      MinimizeWithCeres(
+      const ceres::Solver::Summary summary = MinimizeWithCeres(
           problem->OptionsFor(run.options(), threads),
           [&] { return CeresPoint{.model = problem->Model()}; }, problem->problem(), &run);
+      // Its residuals are not Objective's, which would count them.
+      CountValues(summary.num_residual_evaluations);
+      CountDerivatives(summary.num_jacobian_evaluations);
     }
     return run.Finish();
   }

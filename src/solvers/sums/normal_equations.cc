@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/algebra/symmetric_matrix.h"
+#include "core/system/evaluation_count.h"
 #include "model/objective/sample_derivatives.h"
 #include "solvers/sums/joint_rows.h"
 #include "solvers/sums/joint_shadowing.h"
@@ -140,6 +141,7 @@ NormalEquations::~NormalEquations() = default;
 void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   CheckSameSpec(model.spec(), objective_.spec());
   NotNull(result, "the result");
+  CountDerivatives(1);
   if (condensed_ != nullptr) {
     Clear(model.spec().num_parameters(), result);
     condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
