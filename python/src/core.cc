@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "direction_rows.h"
 #include "error_translator.h"
 #include "named_values.h"
 #include "owned_array.h"
@@ -36,55 +37,7 @@ namespace trilobe::python {
 namespace {
 
 template <typename Real>
-using Input = nb::ndarray<const Real, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-template <typename Real>
 using Output = nb::ndarray<Real, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-// Rows of an input array; a single one counts for all.
-template <typename Real, size_t kWidth>
-class Rows {
- public:
-  Rows(const Input<Real>& array, size_t count, const char* name)
-      : data_(array.data()), step_(array.shape(0) == 1 ? 0 : kWidth) {
-    if (array.shape(1) != kWidth || (array.shape(0) != count && array.shape(0) != 1)) {
-      throw Error(ErrorKind::kMismatch,
-                  std::string(name) + " does not have as many rows as there are results")
-          .About(name, array.shape(0));
-    }
-  }
-
-  std::array<Real, kWidth> operator[](size_t k) const {
-    std::array<Real, kWidth> row;
-    for (size_t a = 0; a < kWidth; ++a) row[a] = data_[k * step_ + a];
-    return row;
-  }
-
- protected:
-  const Real* data_;
-  size_t step_;
-};
-
-// Directions: of unit length whatever they are given as, and (0, 0, 0), where everything is 0, if
-// they are none.
-template <typename Real>
-class Directions : Rows<Real, 3> {
- public:
-  using Rows<Real, 3>::Rows;
-
-  std::array<Real, 3> operator[](size_t k) const {
-    std::array<Real, 3> w = Rows<Real, 3>::operator[](k);
-    const Real square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-    constexpr Real kRounding = static_cast<Real>(sizeof(Real) == 4 ? 2e-6 : 1e-12);
-    if (std::abs(square - 1) <= kRounding) return w;
-    // Scales by the largest component first, lest the square overflow or vanish.
-    const Real largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
-    if (!(largest > 0 && std::isfinite(largest))) return {};
-    for (Real& x : w) x /= largest;
-    const Real length = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    for (Real& x : w) x /= length;
-    return std::isfinite(length) ? w : std::array<Real, 3>{};
-  }
-};
 
 template <typename Real>
 void CheckWidth(const Output<Real>& out, size_t width) {
@@ -167,7 +120,8 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
                 {values.data(), size});
     for (size_t k = 0; k < size; ++k) {
       const Real scale = cosine ? std::max(outgoing[k][2], Real{0}) : Real{1};
-      for (const Real f : values[k]) *next++ = f * scale;
+      const Real none = NoneOf(incident[k], outgoing[k]);
+      for (const Real f : values[k]) *next++ = f * scale + none;
     }
   });
 }
@@ -186,7 +140,13 @@ void Spectrum(const Material& material, const Input<double>& wi, const Input<dou
   double* next = out.data();
   const nb::gil_scoped_release released;
   for (size_t k = 0; k < count; ++k) {
-    next = std::ranges::copy(Evaluate(model, {in[k], away[k]}), next).out;
+    const auto i = in[k], o = away[k];
+    const double none = NoneOf(i, o);
+    if (std::isnan(none)) {
+      next = std::fill_n(next, model.wavelengths().size(), none);
+    } else {
+      next = std::ranges::copy(Evaluate(model, {i, o}), next).out;
+    }
   }
 }
 
@@ -205,9 +165,12 @@ void EvalComponents(const Material& material, const Input<Real>& wi, const Input
   for (size_t k = 0; k < count; ++k) {
     const auto i = in[k], o = away[k];
     const bool above = i[2] > 0 && o[2] > 0;
+    const Real none = NoneOf(i, o);
     bsdf.LobeValues(i, o, values.data());
-    for (const Real d : bsdf.diffuse()) *next++ = above ? d : Real{0};
-    for (int m = 0; m < lobes; ++m) next = std::copy(values[m].begin(), values[m].end(), next);
+    for (const Real d : bsdf.diffuse()) *next++ = (above ? d : Real{0}) + none;
+    for (int m = 0; m < lobes; ++m) {
+      for (const Real f : values[m]) *next++ = f + none;
+    }
   }
 }
 
@@ -221,8 +184,10 @@ void Pdf(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
   const Bsdf<Real>& bsdf = material.Of<Real>();
   Block<std::array<Real, 3>> incident, outgoing;
   ForBlocks(count, [&](size_t begin, size_t size) {
+    Real* const pdfs = out.data() + begin;
     bsdf.Pdfs(Gather(in, begin, size, &incident), Gather(away, begin, size, &outgoing),
-              {out.data() + begin, size});
+              {pdfs, size});
+    for (size_t k = 0; k < size; ++k) pdfs[k] += NoneOf(incident[k], outgoing[k]);
   });
 }
 
@@ -234,6 +199,7 @@ void Sample(const Material& material, const Input<Real>& wi, const Input<Real>& 
   CheckWidth(out, 7);
   const Directions<Real> in(wi, count, "wi");
   const Rows<Real, 2> numbers(u, count, "u");
+  CheckRandom(u);
   Real* next = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
@@ -244,9 +210,10 @@ void Sample(const Material& material, const Input<Real>& wi, const Input<Real>& 
     bsdf.SamplesOfWo(Gather(in, begin, size, &incident), Gather(numbers, begin, size, &pairs),
                      {samples.data(), size});
     for (size_t k = 0; k < size; ++k) {
-      next = std::copy(samples[k].wo.begin(), samples[k].wo.end(), next);
-      *next++ = samples[k].pdf;
-      next = std::copy(samples[k].weight.begin(), samples[k].weight.end(), next);
+      const Real none = NoneOf(incident[k]);
+      for (const Real x : samples[k].wo) *next++ = x + none;
+      *next++ = samples[k].pdf + none;
+      for (const Real x : samples[k].weight) *next++ = x + none;
     }
   });
 }
@@ -260,8 +227,9 @@ void Albedo(const Material& material, const Input<Real>& wi, const Output<Real>&
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
   for (size_t k = 0; k < count; ++k) {
-    const auto albedo = bsdf.Albedo(in[k]);
-    next = std::copy(albedo.begin(), albedo.end(), next);
+    const auto w = in[k];
+    const Real none = NoneOf(w);
+    for (const Real a : bsdf.Albedo(w)) *next++ = a + none;
   }
 }
 

@@ -35,6 +35,11 @@ def _figure(figure: Any, size: tuple[float, float]) -> Any:
     return figure
 
 
+def size_of_factors(brdf: Brdf) -> tuple[float, float]:
+    """Width and height of `factors` [inches]."""
+    return (11, 3.4) if not brdf.anisotropic else (11, 2.4 * max(brdf.lobes, 1))
+
+
 def factors(
     model: Brdf | str | os.PathLike[str], figure: Any = None, *, uncertainty: Uncertainty | None = None
 ) -> Any:
@@ -48,7 +53,7 @@ def factors(
         raise Error("uncertainty must be what Result.uncertainty() returns")
     if uncertainty is not None and brdf.anisotropic:
         raise Error("bands are drawn of isotropic models alone")
-    figure = _figure(figure, (11, 3.4) if not brdf.anisotropic else (11, 2.4 * max(brdf.lobes, 1)))
+    figure = _figure(figure, size_of_factors(brdf))
     if brdf.anisotropic and brdf.lobes > 0:
         return _polar_factors(brdf, figure)
     for axes, name in zip(figure.subplots(1, 3), "DFG"):

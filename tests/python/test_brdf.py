@@ -50,6 +50,15 @@ def test_its_parts_agree(make, dtype):
     )
 
 
+def spectral():
+    """A model of seven wavelengths."""
+    brdf, rng = isotropic(), np.random.default_rng(7)
+    text = json.loads(brdf.to_json())
+    text.update(version=3, wavelengths=[400, 450, 500, 550, 600, 650, 700], d=(0.1 * rng.random(7)).tolist(),
+                s=rng.random((3, 7)).tolist(), F=(0.5 + rng.random((7, 90))).tolist())
+    return trilobe.Brdf.from_json(json.dumps(text))
+
+
 def test_a_spectral_model_has_the_values_of_its_wavelengths():
     brdf, rng = isotropic(), np.random.default_rng(7)
     text = json.loads(brdf.to_json())
@@ -143,19 +152,53 @@ def test_takes_dlpack():
         brdf.eval(wi, Elsewhere(wo))
 
 
-def test_is_zero_where_there_is_no_light():
+def everything(brdf, w, dtype):
+    """What all methods say of a direction, beside one that is right."""
+    up, w = np.array([0, 0, 1], dtype), np.array(w, dtype)
+    for pair in ((w, up), (up, w)):
+        yield from (brdf.eval(*pair), brdf.eval(*pair, components=True), brdf.eval_cos(*pair), brdf.pdf(*pair))
+        if brdf.wavelengths.size > 0:
+            yield brdf.spectrum(*pair)
+    yield brdf.albedo(w)
+    yield from brdf.sample(w, np.array([0.3, 0.4], dtype))
+
+
+@pytest.mark.parametrize("make", [*ALL, spectral])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_is_zero_where_there_is_no_light(make, dtype):
+    for w in ([0, 0, -1], [1, 0, 0], [1, 0, -1e-6]):
+        for value in everything(make(), w, dtype):
+            assert (value == 0).all()
+
+
+@pytest.mark.parametrize("make", [*ALL, spectral])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_is_nan_of_what_is_no_direction(make, dtype):
+    brdf = make()
+    for w in ([0, 0, 0], [np.nan, 0, 1], [0, 0, np.nan], [np.inf, 0, 1], [0, 0, -np.inf], [np.inf, np.nan, 1]):
+        for value in everything(brdf, w, dtype):
+            assert np.isnan(value).all()
+    # The rows beside it are as they are alone.
+    wi, wo = directions(300, 1).astype(dtype), directions(300, 2).astype(dtype)
+    f, pdf = brdf.eval(wi, wo), brdf.pdf(wi, wo)
+    wi[7], wo[280] = np.nan, 0
+    kept = np.delete(np.arange(300), [7, 280])
+    np.testing.assert_array_equal(brdf.eval(wi, wo)[kept], f[kept])
+    np.testing.assert_array_equal(brdf.pdf(wi, wo)[kept], pdf[kept])
+    assert np.isnan(brdf.eval(wi, wo)[[7, 280]]).all()
+
+
+@pytest.mark.parametrize("u", [1, -1e-9, 1.5, np.nan, np.inf])
+def test_refuses_random_numbers_that_are_none(u):
     brdf = isotropic()
-    up = np.array([0.0, 0, 1])
-    none = [[0, 0, -1], [0, 0, 0], [1, 0, 0], [np.nan, 0, 1], [np.inf, 0, 1], [0, 0, -np.inf]]
-    for w in none:
-        for dtype in (np.float32, np.float64):
-            w = np.array(w, dtype)
-            assert (brdf.eval(w, up.astype(dtype)) == 0).all()
-            assert (brdf.eval(up.astype(dtype), w, components=True) == 0).all()
-            assert brdf.pdf(w, up.astype(dtype)) == 0
-            assert (brdf.albedo(w) == 0).all()
-            drawn = brdf.sample(w, [0.3, 0.4])
-            assert drawn.pdf == 0 and (drawn.weight == 0).all()
+    numbers = np.full((300, 2), 0.5)
+    numbers[290, 1] = u
+    for dtype in (np.float32, np.float64):
+        with pytest.raises(trilobe.Error, match="from 0 to below 1") as caught:
+            brdf.sample([0, 0, 1], numbers.astype(dtype))
+        assert (caught.value.kind, caught.value.key) == ("range", "u")
+        last = np.nextafter(dtype(1), dtype(0))
+        assert (brdf.sample(np.array([0, 0, 1], dtype), np.array([0, last], dtype)).pdf > 0).all()
 
 
 def test_directions_need_not_be_unit_vectors():

@@ -12,18 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe import _core
-from trilobe._model.arrays import Floats, as_array, check_width, common_shape, of_one_precision, rows
+from trilobe._model.arrays import Floats, check_width, common_shape, of_one_precision, rows
 from trilobe._model.error import Error
 from trilobe._model.files import printable, text_of_path, write_text
+from trilobe._model.model_text import AXIS, POLAR, text_of_model
+from trilobe._model.pictures import page
 from trilobe._model.table import Table
 
 CHANNELS = ("red", "green", "blue")
-_OTHER_FORMATS = (
-    ".binary", ".bin", ".csv", ".bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".gltf", ".glsl", ".hlsl",
+# What `convert` writes, by the endings of names.
+FORMATS = (
+    ".binary", ".bin", ".csv", ".bsdf", ".zemax.bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".gltf", ".glsl",
+    ".hlsl",
 )
 _ALBEDO_ERROR = 0.03  # error of Brdf.albedo, up to 85 degrees
-_POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
-_AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
 
 
 class Sample(NamedTuple):
@@ -44,9 +46,9 @@ class Brdf:
 
     Directions are arrays (..., 3) that broadcast against each other, away from the surface, z
     along its normal, x where the azimuths of an anisotropic material begin. They are made unit
-    vectors; below the surface, and where they are no directions, everything is 0. Arrays of
-    float32 are computed and returned as such, everything else as float64. Arrays of other
-    libraries are taken by DLPack; results are numpy's.
+    vectors. Below the surface everything is 0. Where one is no direction, as it is zero, infinite
+    or NaN, everything is NaN. Arrays of float32 are computed and returned as such, everything else
+    as float64. Arrays of other libraries are taken by DLPack; results are numpy's.
 
     Immutable, and free for use by any number of threads: Python's lock is released.
 
@@ -81,7 +83,7 @@ class Brdf:
         """Makes a model of its tables."""
         if like is not None and not isinstance(like, Brdf):
             raise Error("like must be a trilobe.Brdf")
-        self._set(_text_of(d, s, {"D": D, "F": F, "G": G}, like, stretch), "the arrays of the model")
+        self._set(text_of_model(d, s, {"D": D, "F": F, "G": G}, like, stretch), "the arrays of the model")
 
     def _set(self, text: str, source: str) -> None:
         self._material = _core.Material(text.encode("utf-8", "surrogatepass"), source)
@@ -105,7 +107,7 @@ class Brdf:
 
         Warns if a model that was made of arrays, or edited, reflects more light than falls on it.
         """
-        for ending in _OTHER_FORMATS:
+        for ending in FORMATS:
             if text_of_path(path).lower().endswith(ending):
                 raise Error(f"a model file is not of the format {ending}; trilobe.convert(model, path) writes that")
         if not self.fit:
@@ -188,12 +190,15 @@ class Brdf:
 
         Args:
             wi: directions (..., 3).
-            u: two numbers from 0 to 1 for each, (..., 2). Half vectors are drawn from what the
-                lobes reflect at this wi, the diffuse term by a cosine (docs/rendering.md).
+            u: two numbers from 0 to below 1 for each, (..., 2). Half vectors are drawn from what
+                the lobes reflect at this wi, the diffuse term by a cosine (docs/rendering.md).
 
         Returns:
             wo (..., 3), pdf [1/sr] (...) and weight = f cos(theta_o) / pdf (..., 3). The latter
             two are 0 where wi is below the surface and, rarely, by rounding at the horizon.
+
+        Raises:
+            Error: for numbers that are not in [0, 1).
         """
         wi, u = of_one_precision(wi=wi, u=u)
         check_width(wi, "wi", 3, "directions")
@@ -268,7 +273,7 @@ class Brdf:
 
     def unobserved(self, factor: str) -> NDArray[np.bool_]:
         """Marks entries of "D", "F" or "G" that no sample of the fit has touched, in the table's shape."""
-        if not isinstance(factor, str) or factor not in _AXIS:
+        if not isinstance(factor, str) or factor not in AXIS:
             raise Error(f"there is no factor {' '.join(repr(factor).split())[:60]}; there are D, F and G")
         marks: NDArray[np.bool_] = self._material.unobserved(factor).astype(bool)
         return marks.reshape(self._table(factor).shape)
@@ -314,15 +319,15 @@ class Brdf:
             shape.append(3)
             coords["channel"] = np.array(CHANNELS)
         if axis["rule"] == "polar":
-            theta, phi = _POLAR[name]
+            theta, phi = POLAR[name]
             dims += [theta, phi]
             shape += [len(axis["theta_nodes"]), axis["phi_nodes"]]
             coords[theta] = np.radians(axis["theta_nodes"])
             coords[phi] = 2 * np.pi * np.arange(axis["phi_nodes"]) / axis["phi_nodes"]
         else:
-            dims.append(_AXIS[name])
+            dims.append(AXIS[name])
             shape.append(axis["size"])
-            coords[_AXIS[name]] = np.array(axis["theta"])
+            coords[AXIS[name]] = np.array(axis["theta"])
         values = self._material.tables(name).reshape(shape)
         return _frozen(Table(values, tuple(dims), coords, axis))
 
@@ -346,6 +351,16 @@ class Brdf:
         """A short description."""
         kind = "anisotropic" if self.anisotropic else "isotropic"
         return f"<trilobe.Brdf: {kind}, {self.lobes} lobes>"
+
+    def _repr_html_(self) -> str:
+        """The tables, and the model on a sphere where what draws that is installed, as notebooks show them."""
+        from trilobe import plot
+
+        drawings = {
+            "D, F and G": (*plot.size_of_factors(self), lambda figure: plot.factors(self, figure)),
+            "the model on a sphere": (3.2, 3.4, lambda figure: plot.spheres(self, None, figure)),
+        }
+        return page(repr(self)[1:-1], {}, drawings)
 
     def __reduce__(self) -> Any:
         """Pickles and copies by the text of the model file."""
@@ -416,126 +431,3 @@ def _all_rows(array: Floats, shape: tuple[int, ...]) -> Floats:
 def _frozen(table: Table) -> Table:
     table.flags.writeable = False
     return table
-
-
-# Conversion of arrays to the text of a model file, which C++ checks and reads.
-
-
-def _text_of(
-    d: ArrayLike,
-    s: ArrayLike,
-    tables: dict[str, ArrayLike],
-    like: Brdf | None,
-    stretch: Any,
-) -> str:
-    weights = as_array(s, "s").astype(np.float64)
-    if weights.ndim != 2 or weights.shape[1] != 3:
-        raise Error(f"s has the shape {weights.shape}, and must have (lobes, 3)")
-    lobes = len(weights)
-    diffuse = as_array(d, "d").astype(np.float64)
-    if diffuse.shape not in ((), (1,), (3,)):
-        raise Error(f"d has the shape {diffuse.shape}, and must have (3,)")
-    json_of: dict[str, Any] = {
-        "format": "trilobe-model",
-        "version": 1,
-        "kind": "isotropic",
-        "lobes": lobes,
-        "sharing": {},
-    }
-    axes = {name: _axis_of(name, values, like, lobes) for name, values in tables.items()}
-    for name, (_, axis) in axes.items():
-        json_of["sharing"][name] = {key: axis[key] for key in ("per_lobe", "per_channel")}
-    polar = {name: axis for name, (_, axis) in axes.items() if axis["rule"] == "polar"}
-    if polar:
-        if set(polar) != {"D", "G"}:
-            raise Error("of an anisotropic model both D and G are over theta and phi")
-        json_of["kind"] = "anisotropic"
-        json_of["theta_nodes"] = {name: list(axis["theta_nodes"]) for name, axis in polar.items()}
-        json_of["phi_nodes"] = {
-            name: [360.0 * k / axis["phi_nodes"] for k in range(axis["phi_nodes"])]
-            for name, axis in polar.items()
-        }
-    pairs = _stretch_of(stretch, like, lobes)
-    if pairs is not None:
-        json_of["version"] = 2
-        json_of["stretch"] = pairs
-    numbers = {"d": np.broadcast_to(diffuse, (3,)), "s": weights}
-    numbers.update({name: values for name, (values, _) in axes.items()})
-    for name, values in numbers.items():
-        if not (np.isfinite(values).all() and (values >= 0).all()):
-            wrong = np.argwhere(~(np.isfinite(values) & (values >= 0)))[0]
-            place = ", ".join(str(k) for k in wrong)
-            raise Error(
-                f"{name}[{place}] is {values[tuple(wrong)]}; all entries of a model must be finite and >= 0"
-            )
-        json_of[name] = values.tolist()
-    return json.dumps(json_of)
-
-
-def _axis_of(
-    name: str, given: ArrayLike, like: Brdf | None, lobes: int
-) -> tuple[NDArray[np.float64], dict[str, Any]]:
-    """The values in the shape that a file has, and the axis."""
-    array = as_array(given, name).astype(np.float64)
-    if isinstance(given, Table) and given.rules:
-        axis = given.rules
-    elif isinstance(given, Table) and given.dims:
-        axis = _axis_by_names(name, given)
-    elif like is not None:
-        axis = like._material.axis(name)
-    else:
-        axis = {
-            "rule": "",
-            "size": array.shape[-1] if array.ndim > 0 else 0,
-            "per_lobe": name != "F",
-            "per_channel": name == "F",
-        }
-    if lobes == 0:  # a file has no tables then
-        return np.empty(0), axis
-    shape: tuple[int, ...] = (lobes,) if axis["per_lobe"] else ()
-    if axis["per_channel"]:
-        shape += (3,)
-    if axis["rule"] == "polar":
-        shape += (len(axis["theta_nodes"]), axis["phi_nodes"])
-    else:
-        shape += (axis["size"],)
-    if array.shape != shape:
-        raise Error(f"{name} has the shape {array.shape}, and must have {shape}")
-    return array, axis
-
-
-def _axis_by_names(name: str, table: Table) -> dict[str, Any]:
-    """The axis of a table that somebody else made, by the names of its axes."""
-    *shared, last = table.dims
-    axis: dict[str, Any] = {"rule": "", "size": table.shape[-1]}
-    if name in _POLAR and tuple(table.dims[-2:]) == _POLAR[name]:
-        *shared, theta, _ = table.dims
-        if theta not in table.coords:
-            raise Error(f"{name} needs coords[{theta!r}], where its rows stand in radians")
-        axis["rule"] = "polar"
-        # Rounds to numbers that people write, such as 15 degrees.
-        axis["theta_nodes"] = np.degrees(as_array(table.coords[theta], theta)).round(12).tolist()
-        axis["phi_nodes"] = table.shape[-1]
-    elif last != _AXIS[name]:
-        raise Error(f"{name} has the axes {table.dims}, and the last must be {_AXIS[name]!r}")
-    if shared not in (["lobe"], ["channel"], ["lobe", "channel"], []):
-        raise Error(f"{name} has the axes {table.dims}; begin with 'lobe', 'channel', or both")
-    axis["per_lobe"], axis["per_channel"] = "lobe" in shared, "channel" in shared
-    return axis
-
-
-def _stretch_of(stretch: Any, like: Brdf | None, lobes: int) -> Any:
-    if stretch is None:
-        pairs = like.stretch if like is not None and like.lobes == lobes else []
-        if not any(x != 0 for pair in pairs for x in pair):
-            return None
-        stretch = pairs if len(set(pairs)) > 1 else pairs[0]
-    array = as_array(stretch, "stretch").astype(np.float64)
-    if array.shape not in ((2,), (lobes, 2)):
-        raise Error(f"stretch has the shape {array.shape}, and must have (2,) or ({lobes}, 2)")
-    if not np.isfinite(array).all():
-        raise Error("stretch must be finite")
-    named = [{"along": along, "across": across} for along, across in array.reshape(-1, 2).tolist()]
-    if not array.any():
-        return None
-    return named[0] if array.ndim == 1 else named
