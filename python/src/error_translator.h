@@ -26,10 +26,12 @@ inline nanobind::object PythonError(const Error& error) {
   const nanobind::object line =
       facts.line == 0 ? nanobind::object(nanobind::none()) : nanobind::int_(facts.line);
   // Imported only when needed, so that a module can be loaded without the package.
-  const nanobind::object type = nanobind::module_::import_("trilobe._model.error").attr("Error");
-  return type(text(error.what()), nanobind::arg("kind") = text(NameOf(error.kind())),
-              nanobind::arg("file") = fact(facts.file), nanobind::arg("line") = line,
-              nanobind::arg("key") = fact(facts.key), nanobind::arg("value") = fact(facts.value));
+  const nanobind::module_ module = nanobind::module_::import_("trilobe._model.error");
+  return module.attr("Error")(module.attr("in_keywords")(text(error.what())),
+                              nanobind::arg("kind") = text(NameOf(error.kind())),
+                              nanobind::arg("file") = fact(facts.file),
+                              nanobind::arg("line") = line, nanobind::arg("key") = fact(facts.key),
+                              nanobind::arg("value") = fact(facts.value));
 }
 
 // Makes the Errors that a module's functions throw exceptions of Python.

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from typing import Any
 
-from trilobe._model.error import Error
+from trilobe._model.error import Error, in_keywords
 from trilobe._model.files import text_of_path
 
 
@@ -52,7 +52,8 @@ def run(sources: list[str], out: str, workers: int, program: Any, flags: dict[st
     # 3: some could not be fitted, which their rows say.
     if process.returncode not in (0, 3):
         lines = [line for line in told.splitlines() if line.strip()]
-        raise Error(lines[-1].removeprefix("trilobe: ") if lines else f"trilobe ended with {process.returncode}")
+        told_last = in_keywords(lines[-1].removeprefix("trilobe: ")) if lines else ""
+        raise Error(told_last or f"trilobe ended with {process.returncode}")
     table = os.path.join(out, "fits.csv")
     try:
         with open(table, newline="", encoding="utf-8") as file:

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from trilobe._fitting.extension import fits
 from trilobe._model.arrays import as_array
-from trilobe._model.brdf import CHANNELS, Brdf, load
-from trilobe._model.error import Error
-from trilobe._model.files import text_of_path
+from trilobe._model.brdf import CHANNELS, FORMATS, Brdf, load
+from trilobe._model.error import Error, in_keywords
+from trilobe._model.files import printable, text_of_path
 
 
 class Measurement:
@@ -165,7 +165,7 @@ class Measurement:
     @property
     def notes(self) -> list[str]:
         """Anomalies of the data, a sentence each."""
-        return list(self._data.notes)
+        return [in_keywords(note) for note in self._data.notes]
 
     @property
     def max_angle(self) -> float:
@@ -367,9 +367,22 @@ def convert(
         what = load(name) if is_model(name) else read(name)
     options = {"error": error, "spectral": spectral, "threads": threads}
     written = text_of_path(path)
+    _check_ending(written, isinstance(what, Brdf))
     if isinstance(what, Brdf):
         return list(fits().convert_model(what.to_json().encode(), written, options))
     return list(fits().convert_measurement(what._data, written, options))
+
+
+def _check_ending(path: str, of_model: bool) -> None:
+    """Raises Error, which names all formats, for an ending that `convert` does not know."""
+    ending = os.path.splitext(path)[1].lower()
+    if not ending or path.lower().endswith(FORMATS):
+        return
+    others = [known for known in FORMATS if of_model or known not in (".glsl", ".hlsl")]
+    model_file = "; model.save(path) writes a model file" if of_model and ending == ".json" else ""
+    raise Error(
+        f"{printable(path)}: trilobe.convert writes no {ending!r}; end the name in {', '.join(others[:-1])} or "
+        f"{others[-1]}{model_file}", kind="unsupported", file=path, key="ending", value=ending)
 
 
 def is_model(name: str) -> bool:
