@@ -118,7 +118,7 @@ def test_has_the_names_of_scipy(plastic, fitted):
     assert E.value(fitted.x) == pytest.approx(fitted.fun, rel=1e-9)
     np.testing.assert_array_equal(E.start(fitted.model), fitted.x)
     assert fitted.success and fitted.message.startswith("an iteration changed E by less")
-    assert fitted.nit == fitted.trace["iteration"][-1] and fitted.nfev == len(fitted.trace)
+    assert fitted.nit == fitted.trace["iteration"][-1] and fitted.nfev > len(fitted.trace)
 
 
 def test_types_name_all_solvers_and_options():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -12,11 +13,13 @@ from numpy.typing import NDArray
 
 from trilobe._fitting.extension import fits
 from trilobe._fitting.measurement import Measurement, measurement_of
-from trilobe._fitting.objective import Problem
-from trilobe._fitting.uncertainty import Uncertainty, uncertainty
+from trilobe._fitting.objective import Objective, Problem
+from trilobe._fitting.statistics import Statistics, objective_of, report_of, statistics_of
+from trilobe._fitting.uncertainty import MOST, Uncertainty, uncertainty
 from trilobe._model.brdf import Brdf
 from trilobe._model.error import Error
 from trilobe._model.files import make_folder, printable, text_of_path, write_text
+from trilobe._model.pictures import page
 
 _FOUND = {
     "converged": "an iteration changed E by less than the tolerance",
@@ -29,6 +32,11 @@ _ENDED = {
     "max_seconds": "max_seconds is over",
     "interrupted": "interrupted",
 }
+_STATUS = {"max_iterations": 1, "max_seconds": 2, "interrupted": 3}
+_KEYS = (
+    "x", "fun", "jac", "success", "status", "message", "nit", "nfev", "njev", "model", "report", "trace",
+)
+_NO_DATA = "a Result that was unpickled has no measurement; give measurement="
 
 
 class Record(NamedTuple):
@@ -45,7 +53,7 @@ class Record(NamedTuple):
     objective_with_prior: float
 
 
-class Result:
+class Result(Mapping[str, Any]):
     """The result of a fit.
 
     Attributes:
@@ -55,8 +63,13 @@ class Result:
         report: a dict, as report.json is (docs/file-formats.md).
         interrupted: whether Ctrl-C, `callback` or `stop` ended it early; a limit as `max_seconds` does not count.
         x: the parameters of the model, in the order of `Objective.parts`. [n]
+        nfev: how often E was computed, from the starting points to the finishing steps, traces included.
+        njev: how often its derivatives by all parameters were; sweeps of awls compute those of a part at a time.
 
-    Names of scipy.optimize.OptimizeResult are there, too: `x`, `fun`, `success`, `message`, `nit`, `nfev`.
+    Names of scipy.optimize.OptimizeResult are there, too, as attributes and as keys (``result["fun"]``): `x`, `fun`,
+    `jac`, `success`, `status`, `message`, `nit`, `nfev`, `njev`. Those of lmfit's results are attributes: `chisqr`,
+    `redchi`, `aic`, `bic`, `ndata`, `nvarys`, `nfree`, `residual`, and `fit_report()`. What needs the measurement
+    (`jac` and these) raises Error in a Result that was unpickled.
     """
 
     model: Brdf
@@ -64,6 +77,8 @@ class Result:
     report: dict[str, Any]
     interrupted: bool
     x: NDArray[np.float64]
+    nfev: int
+    njev: int
 
     def __init__(self, outcome: Any, problem: Problem) -> None:
         """Takes what C++ returned, and what it was asked."""
@@ -85,6 +100,9 @@ class Result:
             "report.json": outcome.report_text.decode(),
         }
         self.report = json.loads(self._texts["report.json"])
+        self.nfev = int(outcome.values)
+        self.njev = int(outcome.derivatives)
+        self._objective: Objective | None = None
 
     @property
     def verdict(self) -> str:
@@ -114,9 +132,107 @@ class Result:
         return int(self.report["iterations"])
 
     @property
-    def nfev(self) -> int:
-        """Points at which the trace has E: the start, and one an iteration."""
-        return len(self.trace)
+    def status(self) -> int:
+        """0 where `success` is true, 1 for max_iterations, 2 for max_seconds, 3 for an interruption."""
+        return 0 if self.success else _STATUS["interrupted" if self.interrupted else self.report["stop_reason"]]
+
+    @property
+    def jac(self) -> NDArray[np.float64]:
+        """The gradient of E at x. [n] It is 0 or more where x is 0 and would leave its bound."""
+        return self._E().gradient(self.x)
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """sqrt(w) (model - measurement) by sample and channel, whose squares add up to `fun`. [3 samples]."""
+        return self._E().residuals(self.x)
+
+    @property
+    def ndata(self) -> int:
+        """How many residuals there are: three of each sample."""
+        return self._statistics().ndata
+
+    @property
+    def nvarys(self) -> int:
+        """How many parameters the data hold: what they read and is not at 0, but for the scale of each table."""
+        return self._statistics().nvarys
+
+    @property
+    def nfree(self) -> int:
+        """`ndata` - `nvarys`."""
+        return self._statistics().nfree
+
+    @property
+    def chisqr(self) -> float:
+        """`fun`, whose weights are those of the weighting and not 1 / sigma^2: it compares fits with one weighting."""
+        return self.fun
+
+    @property
+    def redchi(self) -> float:
+        """`chisqr` / `nfree`."""
+        return self._statistics().redchi
+
+    @property
+    def aic(self) -> float:
+        """Akaike's information criterion, n ln(chisqr / n) + 2 nvarys, as lmfit has it."""
+        return self._statistics().aic
+
+    @property
+    def bic(self) -> float:
+        """The Bayesian information criterion, n ln(chisqr / n) + ln(n) nvarys."""
+        return self._statistics().bic
+
+    def fit_report(self, *, show_correl: bool = True, min_correl: float = 0.1) -> str:
+        """The statistics, d and s by name with their deviations, and how far the tables are off, as lmfit has it.
+
+        Deviations are those of `uncertainty()`; "fixed" is an entry that no sample reads, or that is at 0.
+
+        Args:
+            show_correl: tells correlations among d and s, too.
+            min_correl: those that are smaller are left out.
+        """
+        told = self.uncertainty() if len(self.x) <= MOST else None
+        lines = {
+            "measurement": str(self.report["source"]),
+            "fitting method": str(self.report["solver"]),
+            "iterations": f"{self.nit}",
+            "function evals": f"{self.nfev}",
+            "message": self.message,
+            "verdict": self.verdict,
+        }
+        return report_of(lines, self._statistics(), self.model, told, float(min_correl) if show_correl else None)
+
+    def _E(self) -> Objective:
+        """The E that `fun` is of."""
+        if self._objective is None:
+            if self._problem is None or self._problem.measurement is None:
+                raise Error("a Result that was unpickled has no measurement; fit again, or take trilobe.Objective",
+                            kind="missing", key="measurement")
+            self._objective = objective_of(self._problem, self.model)
+        return self._objective
+
+    def _statistics(self) -> Statistics:
+        return statistics_of(self._E(), self.x, self.fun)
+
+    def __getitem__(self, name: str) -> Any:
+        """An attribute that is a key, as ``result["fun"]``."""
+        if name not in _KEYS:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        """The keys; `jac` only where it can be computed."""
+        has_data = self._problem is not None and self._problem.measurement is not None
+        return (name for name in _KEYS if name != "jac" or has_data)
+
+    def __len__(self) -> int:
+        """The number of keys."""
+        return sum(1 for _ in self)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same object, as arrays have no truth value."""
+        return self is other
+
+    __hash__ = object.__hash__
 
     def uncertainty(
         self,
@@ -149,13 +265,13 @@ class Result:
         if measurement is not None:
             problem = Problem(measurement_of(measurement), *(problem or Problem(None))[1:])
         if problem is None or problem.measurement is None:
-            raise Error("a Result that was unpickled has no measurement; give measurement=")
+            raise Error(_NO_DATA, kind="missing", key="measurement")
         return uncertainty(problem, self.model, method, replicates, blocks, seed)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the measurement, which may be large."""
         problem = self._problem and self._problem._replace(measurement=None)
-        return {**self.__dict__, "_problem": problem}
+        return {**self.__dict__, "_problem": problem, "_objective": None}
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes model.json, trace.csv and report.json into a folder, which is made if need be.
@@ -177,6 +293,32 @@ class Result:
     def __repr__(self) -> str:
         """The verdict."""
         return f"<trilobe.Result: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        """The verdict, numbers and pictures, as notebooks show them."""
+        from trilobe import plot
+
+        rows = {
+            "measurement": str(self.report["source"]),
+            "E": f"{self.fun:.4g}",
+            "iterations": f"{self.nit} of {self.report['solver']}; {self.message}",
+            "evaluations of E": f"{self.nfev}",
+            "parameters": f"{len(self.x)}",
+        }
+        measurement = self._problem.measurement if self._problem is not None else None
+
+        def spheres(figure: Any) -> None:
+            try:
+                plot.spheres(self.model, measurement, figure)
+            except Error:  # samples on no grid make no picture
+                plot.spheres(self.model, None, figure)
+
+        drawings = {
+            "D, F and G of the fitted model":
+                (*plot.size_of_factors(self.model), lambda figure: plot.factors(self.model, figure)),
+            "the measurement and the fitted model on a sphere": (6.4, 3.4, spheres),
+        }
+        return page(self.verdict, rows, drawings)
 
 
 def _check_own(path: Path) -> None:

@@ -13,7 +13,7 @@ from trilobe._model.brdf import Brdf
 from trilobe._model.error import Error
 from trilobe._model.table import Table
 
-_MOST = 4000  # most parameters, as matrices of them are stored
+MOST = 4000  # parameters at most, as matrices of them are stored
 _RESOLVED = 1e-12  # share of the largest eigenvalue, below which data say nothing
 
 Vector = NDArray[np.float64]
@@ -106,8 +106,8 @@ def uncertainty(
         if not isinstance(value, (int, np.integer)) or not least <= value <= 1_000_000:
             raise Error(f"{name} must be an integer from {least} to 1000000")
     E = _objective(problem, model, None)
-    if E.num_parameters > _MOST:
-        raise Error(f"uncertainties are known of at most {_MOST} parameters; this model has {E.num_parameters}")
+    if E.num_parameters > MOST:
+        raise Error(f"uncertainties are known of at most {MOST} parameters; this model has {E.num_parameters}")
     x = E.start(model)
     hessian, _ = E.normal_equations(x)
     steps = _Steps(E, x, hessian)
