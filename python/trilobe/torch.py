@@ -93,7 +93,7 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
 
     Args:
         brdf: the model, or the form of one.
-        wi: directions (..., 3), of any length; f is 0 below the surface.
+        wi: directions (..., 3), of any length; f is 0 below the surface, and NaN of zero, infinite and NaN ones.
         wo: the same; both broadcast.
         **parts: d, s, D, F or G in the place of the model's, perhaps with an axis of texels in front, which is then the
             first axis of the directions.
@@ -136,15 +136,19 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
     if texels is not None and (wi.ndim < 2 or wi.shape[0] != texels):
         raise Error(f"there are {texels} texels, and directions of the shape {tuple(wi.shape)}")
     rows = (texels or 1, -1, 3)
+    none = [~w.isfinite().all(dim=-1) | (w == 0).all(dim=-1) for w in (wi.reshape(rows), wo.reshape(rows))]
     wi, wo = (_unit(w.reshape(rows)) for w in (wi, wo))
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
     up = torch.tensor([0.0, 0.0, 1.0], dtype=wi.dtype, device=wi.device)
     wi, wo = (torch.where(above[..., None], w, up) for w in (wi, wo))  # so that no gradient is nan
     value = _Reader(brdf, tables).value(wi, wo)
-    return torch.where(above[..., None], value.clamp(min=0), torch.zeros_like(value)).reshape(shape)
+    value = torch.where(above[..., None], value.clamp(min=0), torch.zeros_like(value))
+    return torch.where((none[0] | none[1])[..., None], torch.full_like(value, math.nan), value).reshape(shape)
 
 
 def _unit(w: Tensor) -> Tensor:
+    largest = w.detach().abs().amax(dim=-1, keepdim=True)  # lest the square overflow or vanish
+    w = w / torch.where((largest > 0) & largest.isfinite(), largest, torch.ones_like(largest))
     length = w.norm(dim=-1, keepdim=True)
     return torch.where(length > 0, w / torch.where(length > 0, length, torch.ones_like(length)), torch.zeros_like(w))
 

@@ -67,7 +67,7 @@ FEW = trilobe.fit_texels(PAIR, np.ones((2, 3, SAMPLES, 3)), MODELS[:2], progress
 @settings
 @hypothesis.given(anything, anything)
 def test_evaluates_texels_anywhere(wi, wo):
-    holds(lambda: FEW.eval(wi, wo))
+    holds(lambda: FEW.eval(wi, wo), wi, wo, shape=(2, 3))
 
 
 @settings

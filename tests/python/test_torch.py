@@ -1,5 +1,6 @@
 """`trilobe.torch`: values are C++'s, gradients those of finite differences."""
 
+import math
 import subprocess
 import sys
 
@@ -107,6 +108,18 @@ def test_says_what_is_wrong():
         trilobe.torch.eval(brdf, w, w, D=torch.ones(2, 2))
     with pytest.raises(trilobe.Error, match="there are 5 texels"):
         trilobe.torch.eval(brdf, w, w, d=torch.ones(5, 3))
+
+
+def test_what_is_no_direction_is_nan_as_in_eval():
+    brdf, up = isotropic(), [0.0, 0.0, 1.0]
+    wi = torch.tensor([up, [0, 0, 0], [math.nan, 0, 1], [0, 0, math.inf], [0, 0, -1], [1e-30, 0, 1e-30]],
+                      requires_grad=True)
+    s = torch.tensor(np.asarray(brdf.s), dtype=torch.float32, requires_grad=True)
+    f = trilobe.torch.eval(brdf, wi, torch.tensor(up), s=s)
+    np.testing.assert_allclose(f.detach().numpy(), brdf.eval(wi.detach().numpy(), np.float32(up)), rtol=1e-4)
+    assert f.isnan()[:, 0].tolist() == [False, True, True, True, False, False]
+    f[[0, 4, 5]].sum().backward()
+    assert s.grad.isfinite().all()
 
 
 def test_directions_of_any_real_numbers():

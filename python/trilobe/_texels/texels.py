@@ -68,7 +68,10 @@ class Texels:
             if w.ndim > 1 and w.shape[:-1] != self.shape:
                 raise Error(f"{name} has the shape {w.shape}, and must have (3,) or {(*self.shape, 3)}")
         above: Any = (wi[..., 2:] > 0) & (wo[..., 2:] > 0)
-        f = np.where(above, self.d, np.zeros((), wi.dtype))
+        none: Any = 0
+        for w in (wi, wo):
+            none = none | ~np.isfinite(w).all(axis=-1, keepdims=True) | (w == 0).all(axis=-1, keepdims=True)
+        f = np.where(none, np.nan, np.where(above, self.d, np.zeros((), wi.dtype)))
         for material, strength in zip(self.materials, self.s):
             f += strength * lobes_of(material, wi, wo)
         return f.astype(wi.dtype, copy=False)
