@@ -28,6 +28,6 @@ export PYTHONPATH=$PWD/build/release/python
 if build/renderer/bin/python -c 'import mitsuba, pytest' 2>/dev/null; then
   llvm=(/usr/lib/x86_64-linux-gnu/libLLVM.so.19*)
   [[ ! -e ${llvm[0]} ]] || export DRJIT_LIBLLVM_PATH=${DRJIT_LIBLLVM_PATH-${llvm[0]}}
-  build/renderer/bin/python -m pytest -q tests/python/test_mitsuba.py tests/python/test_need.py
+  build/renderer/bin/python -m pytest -q tests/python/test_mitsuba*.py tests/python/test_need.py
 fi
-"$venv/bin/python" -m pytest -q --ignore=tests/python/test_mitsuba.py --ignore=tests/python/test_need.py "$@"
+"$venv/bin/python" -m pytest -q --ignore-glob="*/test_mitsuba*.py" --ignore=tests/python/test_need.py "$@"

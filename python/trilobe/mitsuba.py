@@ -8,9 +8,10 @@
     mi.load_dict({"type": "sphere", "bsdf": trilobe.mitsuba.bsdf(brdf)})
     mi.load_dict({"type": "sphere", "bsdf": {"type": "trilobe_measured", "filename": "material.binary"}})
 
-They reflect on the front side; put them into a `twosided` for both. With RGB, spectral and monochrome colours. In
-variants that compile, tables are Dr.Jit arrays, and no Python runs for a ray. In scalar variants each ray calls
-Python, which is slow, but exact.
+They reflect on the front side; put them into a `twosided` for both. They are for all variants; polarised light is
+depolarised. In those that compile, tables are Dr.Jit arrays, and no Python runs for a ray. In scalar variants each
+ray calls Python, which is exact, but some 25 times as slow as Mitsuba's `measured` of the file that
+`trilobe.convert(brdf, "model.bsdf")` writes.
 
 `trilobe` is a fitted model of any form, isotropic or anisotropic. Its tables can be optimised: ``mi.traverse(scene)``
 has d, s, D, F and G of it. Parameters: `filename`, a model file or "material:NAME", or `json`, the text of one;
@@ -45,6 +46,7 @@ if tuple(int(part) for part in mi.__version__.split(".")[:2]) < (3, 6):
 
 from trilobe._mitsuba.albedo import Albedo
 from trilobe._mitsuba.measured import MeasuredTable
+from trilobe._mitsuba.one import OnePair, row
 from trilobe._mitsuba.sampling import Sampling
 from trilobe._mitsuba.tables import Tables
 from trilobe._mitsuba.upsampling import Upsampling
@@ -115,6 +117,12 @@ def _define() -> Any:
             self._colours = Upsampling() if mi.is_spectral else None
             if compiled:
                 self._sampling = Sampling(self._drawn)
+            else:
+                self._set_pairs()
+
+        def _set_pairs(self) -> None:
+            self._pair, self._drawn_pair = OnePair(self._brdf), OnePair(self._drawn)
+            self._is_drawn = self._drawn is self._brdf  # and a sample's weight is the model's
 
         def _fill(self) -> None:
             tables = {name: getattr(self, name).array for name in "DFG"}
@@ -125,8 +133,8 @@ def _define() -> Any:
             return self._tables.value(wi, wo, active)
 
         def _value_of_one(self, wi: Any, wo: Any) -> Any:
-            """The same of two arrays (3,), 0 below the surface."""
-            return self._brdf.eval(wi, wo)
+            """The same of two rows (1, 3), 0 below the surface."""
+            return self._pair.eval(wi, wo)
 
         def traverse(self, callback: Any) -> None:
             for name in ("d", "s", "D", "F", "G") if self._brdf.lobes > 0 else ("d",):
@@ -146,6 +154,8 @@ def _define() -> Any:
                     self._drawn = self._brdf
                 if compiled and self._follows:
                     self._sampling = Sampling(self._brdf)
+                if not compiled:
+                    self._set_pairs()
 
         # Methods of all variants.
 
@@ -162,9 +172,9 @@ def _define() -> Any:
             """The value times cos theta_o, and the density."""
             wi = si.wi
             if not compiled:
-                value = self._value_of_one(_one(wi), _one(wo)) * max(float(wo.z), 0)
-                pdf = self._drawn.pdf(_one(wi), _one(wo))
-                return self._spectrum(si, mi.Color3f([float(x) for x in value])), float(pdf)
+                one_wi, one_wo = row(wi), row(wo)
+                value = self._value_of_one(one_wi, one_wo) * max(wo.z, 0)
+                return self._spectrum(si, mi.Color3f(value)), self._drawn_pair.pdf(one_wi, one_wo)
             active = active & (wi.z > 0) & (wo.z > 0)
             colour = self._value(wi, wo, active) * wo.z
             with dr.suspend_grad():
@@ -175,7 +185,7 @@ def _define() -> Any:
         def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
             wi = si.wi
             if not compiled:
-                return self._both(si, wo, active)[0]
+                return self._spectrum(si, mi.Color3f(self._value_of_one(row(wi), row(wo)) * max(wo.z, 0)))
             active = active & (wi.z > 0) & (wo.z > 0)
             colour = self._value(wi, wo, active) * wo.z
             return dr.select(active, self._spectrum(si, colour), 0)
@@ -183,7 +193,7 @@ def _define() -> Any:
         def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
             wi = si.wi
             if not compiled:
-                return float(self._drawn.pdf(_one(wi), _one(wo)))
+                return self._drawn_pair.pdf(row(wi), row(wo))
             active = active & (wi.z > 0) & (wo.z > 0)
             with dr.suspend_grad():
                 wi, wo = dr.detach(wi), dr.detach(wo)
@@ -199,11 +209,13 @@ def _define() -> Any:
             drawn.sampled_component = mi.UInt32(0)
             drawn.sampled_type = mi.UInt32(+mi.BSDFFlags.GlossyReflection)
             if not compiled:
-                wi = _one(si.wi)
-                wo, pdf, _ = self._drawn.sample(wi, _one(sample2))
-                drawn.wo, drawn.pdf = mi.Vector3f([float(x) for x in wo]), float(pdf)
-                weight = self._value_of_one(wi, wo) * (float(wo[2]) / float(pdf) if pdf > 0 else 0)
-                return drawn, self._spectrum(si, mi.Color3f([float(x) for x in weight]))
+                wi = row(si.wi)
+                of_model = self._drawn_pair.sample(wi, sample2)
+                wo, pdf, weight = of_model[:3], float(of_model[3]), of_model[4:]
+                drawn.wo, drawn.pdf = mi.Vector3f(wo), pdf
+                if not self._is_drawn:
+                    weight = self._value_of_one(wi, wo[None]) * (wo[2] / pdf if pdf > 0 else 0)
+                return drawn, self._spectrum(si, mi.Color3f(weight))
             active = active & (si.wi.z > 0)
             with dr.suspend_grad():
                 wi = dr.detach(si.wi)
@@ -222,9 +234,9 @@ def _define() -> Any:
             if self._albedo is None:
                 self._albedo = Albedo(self._brdf)
             if not compiled:
-                return mi.Color3f(self._albedo.of_one(float(si.wi.z)))
+                return self._spectrum(si, mi.Color3f(self._albedo.of_one(float(si.wi.z))))
             active = active & (si.wi.z > 0)
-            return dr.select(active, self._albedo(si.wi.z, active), 0)
+            return dr.select(active, self._spectrum(si, self._albedo(si.wi.z, active)), 0)
 
         def to_string(self) -> str:
             return f"Trilobe[{self._brdf!r}]"
@@ -249,14 +261,15 @@ def _define() -> Any:
                 self._table = MeasuredTable(measurement, self._brdf)
             elif measurement is not None:
                 self._completed = completed(measurement, self._brdf)
+                self._is_drawn = False
 
         def _value(self, wi: Any, wo: Any, active: Any) -> Any:
             return self._table.value(wi, wo, active)
 
         def _value_of_one(self, wi: Any, wo: Any) -> Any:
             if self._completed is None:
-                return self._brdf.eval(wi, wo)
-            return self._completed.eval(wi[None].astype(np.float64), wo[None].astype(np.float64))[0]
+                return self._pair.eval(wi, wo)
+            return self._completed.eval(wi.astype(np.float64), wo.astype(np.float64))[0]
 
         def traverse(self, callback: Any) -> None:
             pass
@@ -268,11 +281,6 @@ def _define() -> Any:
             return f"TrilobeMeasured[{self._brdf!r}]"
 
     return {"trilobe": Trilobe, "trilobe_measured": TrilobeMeasured}
-
-
-def _one(vector: Any) -> Any:
-    """A vector of a scalar variant."""
-    return np.array(vector, np.float32).ravel()
 
 
 def _register(*_: Any) -> None:

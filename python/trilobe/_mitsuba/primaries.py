@@ -26,14 +26,14 @@ def _colour_of_spectra() -> NDArray[np.float64]:
     si = mi.SurfaceInteraction3f()
     if dr.is_jit_v(mi.Float):
         xyz = np.array(mi.cie1931_xyz(mi.Float(wavelengths)))
-        si.wavelengths = mi.Spectrum(mi.Float(wavelengths))
-        d65 = np.array(illuminant.eval(si))[0]
+        si.wavelengths = mi.UnpolarizedSpectrum(mi.Float(wavelengths))
+        d65 = np.array(mi.unpolarized_spectrum(illuminant.eval(si)))[0]
     else:
         xyz = np.array([np.ravel(mi.cie1931_xyz(float(wavelength))) for wavelength in wavelengths]).T
         d65 = np.empty(len(wavelengths))
         for k, wavelength in enumerate(wavelengths):
-            si.wavelengths = mi.Spectrum(float(wavelength))
-            d65[k] = float(illuminant.eval(si)[0])
+            si.wavelengths = mi.UnpolarizedSpectrum(float(wavelength))
+            d65[k] = float(mi.unpolarized_spectrum(illuminant.eval(si))[0])
     weighted = xyz * d65
     weighted /= weighted[1].sum()
     to_rgb = np.array([[3.240479, -1.537150, -0.498535], [-0.969256, 1.875991, 0.041556],

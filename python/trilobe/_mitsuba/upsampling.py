@@ -25,9 +25,9 @@ class Upsampling:
             grid = self._begin + self._step * np.arange(self._size)
             at = np.array(wavelengths).ravel()
             value: Any = sum(float(colour[c]) * np.interp(at, grid, self._flat[c]) for c in range(3))
-            return mi.Spectrum([float(x) for x in value])
+            return mi.UnpolarizedSpectrum([float(x) for x in value])
         x = dr.clip((wavelengths - self._begin) / self._step, 0, self._size - 1)
-        value = mi.Spectrum(0)
+        value = mi.UnpolarizedSpectrum(0)
         for k in range(len(wavelengths)):
             low = dr.minimum(mi.UInt32(x[k]), self._size - 2)
             t = x[k] - mi.Float(low)
