@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Measures the costs of the package, by `package.py arrays MODEL.json` and `package.py mitsuba MODEL.json`.
 
-arrays    evaluations and samples a second of one core, for arrays of a million pairs, and the time to import it
+arrays    evaluations and samples a second of one core, for arrays of a million pairs, the time to import it, and
+          that of the tables at the first sample
 mitsuba   in llvm_ad_rgb, processor time and noise of a sphere beside roughplastic and `measured` (an RGL file of the
           same model), what recompiles, and time and memory of ten renders in a row
 """
@@ -34,7 +35,11 @@ def arrays(brdf: trilobe.Brdf) -> None:
     for dtype in (np.float32, np.float64):
         r, phi = np.sqrt(rng.random((2, count))), 2 * np.pi * rng.random((2, count))
         wi, wo = np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - r**2)], axis=-1).astype(dtype)
-        u = rng.random((count, 2)).astype(dtype)
+        u = rng.random((count, 2), dtype)
+        first = trilobe.Brdf.from_json(brdf.to_json())
+        started = time.process_time()
+        first.sample(wi[:1], u[:1])
+        print(f"{np.dtype(dtype).name} tables: {1e3 * (time.process_time() - started):.0f} ms at the first sample")
         brdf.sample(wi[:1], u[:1])
         for name, call in {
             "eval": lambda wi=wi, wo=wo: brdf.eval(wi, wo),
@@ -42,11 +47,12 @@ def arrays(brdf: trilobe.Brdf) -> None:
             "sample": lambda wi=wi, u=u: brdf.sample(wi, u),
         }.items():
             seconds = []
-            for _ in range(3):
+            for _ in range(5):
                 started = time.process_time()
                 call()
                 seconds.append(time.process_time() - started)
-            print(f"{np.dtype(dtype).name} {name:6}: {count / min(seconds) / 1e6:.1f} million a second and core")
+            print(f"{np.dtype(dtype).name} {name:6}: {1e9 * min(seconds) / count:.0f} ns, "
+                  f"{count / min(seconds) / 1e6:.1f} million a second and core")
 
 
 def mitsuba(brdf: trilobe.Brdf) -> None:

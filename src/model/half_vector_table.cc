@@ -1,9 +1,11 @@
 #include "trilobe/model/half_vector_table.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "core/base/lanes.h"
 #include "core/base/linear_density.h"
@@ -186,21 +188,34 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
   const Real t = InvertLinearIntegral(part * (lower + upper) / 2, lower, upper);
   // The row of values at this y, in floats: precise enough for a draw.
   constexpr int kMost = (kMaxS - 1) / 4;
-  Four<float> fours[kMost];
   float at_s[kMaxS];
   const int groups = (num_s_ - 1) / 4, end_s = num_s_ - 1;
-  for (int g = 0; g < groups; ++g) fours[g] = Four<float>{};
-  at_s[end_s] = 0;
-  for (int n = 0; n < at.count; ++n) {
-    const float *low = Row(at.node[n], row), *high = low + num_s_;
-    const auto below = static_cast<float>(at.weight[n] * (1 - t));
-    const auto above = static_cast<float>(at.weight[n] * t);
-    for (int g = 0; g < groups; ++g) {
-      fours[g] += below * Load(low + 4 * g) + above * Load(high + 4 * g);
+  const auto mix = [&](auto of_count) {
+    constexpr int kCount = of_count;
+    std::array<const float*, kCount> low;
+    std::array<float, kCount> below, above;
+    for (int n = 0; n < kCount; ++n) {
+      low[n] = Row(at.node[n], row);
+      below[n] = static_cast<float>(at.weight[n] * (1 - t));
+      above[n] = static_cast<float>(at.weight[n] * t);
     }
-    at_s[end_s] += below * low[end_s] + above * high[end_s];
+    for (int g = 0; g < groups; ++g) {
+      Four<float> four{};
+      for (int n = 0; n < kCount; ++n) {
+        four += below[n] * Load(low[n] + 4 * g) + above[n] * Load(low[n] + num_s_ + 4 * g);
+      }
+      Store<float>(four, at_s + 4 * g);
+    }
+    at_s[end_s] = 0;
+    for (int n = 0; n < kCount; ++n) {
+      at_s[end_s] += below[n] * low[n][end_s] + above[n] * low[n][num_s_ + end_s];
+    }
+  };
+  if (at.count == 2) {
+    mix(std::integral_constant<int, 2>());
+  } else {
+    mix(std::integral_constant<int, 4>());
   }
-  for (int g = 0; g < groups; ++g) Store<float>(fours[g], at_s + 4 * g);
   // Twice the integral up to each fourth node, and within a group up to each of its four cells.
   float sums[kMost + 1];
   sums[0] = 0;

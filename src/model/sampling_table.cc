@@ -92,42 +92,54 @@ HalfVectorTable<Real> SamplingTable<Real>::Make(const PreparedModel<Real>& prepa
 // Over y and s, the density of wo by solid angle is multiplied by
 //   d omega_o = 4 (wi . h) d omega_h,  cos theta_h d omega_h = dy d phi / 2,  d phi = 2 phi_max ds:
 // s goes once through [-phi_max, phi_max], or through both halves of it, which are alike where the
-// material is isotropic.
+// material is isotropic. Azimuths of a row follow each other by a rotation, and a row is evaluated
+// at once: the lobes are its values without the diffuse term.
 template <typename Real>
 std::vector<float> SamplingTable<Real>::TabulatedLobes(const PreparedModel<Real>& prepared,
                                                        const HalfVectorNodes& nodes) const {
   const bool anisotropic = prepared.anisotropic();
-  std::vector<float> values;
-  values.reserve(nodes.theta_i.size() * nodes.phi_i * nodes.y.size() * nodes.s);
+  std::vector<float> values(nodes.theta_i.size() * nodes.phi_i * nodes.y.size() * nodes.s);
+  float* row_values = values.data();
   const double least_cosine = std::cos(kGrazingTheta);
-  std::vector<Colour> lobes(std::max(prepared.lobes(), 1));
+  const size_t size = nodes.s;
+  std::vector<Vector> in(size), out(size);
+  std::vector<Colour> f(size);
+  std::vector<double> scale(size);
   for (const double theta_i : nodes.theta_i) {
     const double cos_i = std::cos(theta_i), sin_i = std::sin(theta_i);
     for (int p = 0; p < nodes.phi_i; ++p) {
       const double phi_i = 2 * kPi * p / nodes.phi_i;
-      const Vector wi = {static_cast<Real>(sin_i * std::cos(phi_i)),
-                         static_cast<Real>(sin_i * std::sin(phi_i)), static_cast<Real>(cos_i)};
-      for (size_t row = 0; row < nodes.y.size(); ++row) {
+      const double cos_phi_i = std::cos(phi_i), sin_phi_i = std::sin(phi_i);
+      std::ranges::fill(in, Vector{static_cast<Real>(sin_i * cos_phi_i),
+                                   static_cast<Real>(sin_i * sin_phi_i), static_cast<Real>(cos_i)});
+      for (size_t row = 0; row < nodes.y.size(); ++row, row_values += size) {
         const double cos_h = std::sqrt(1 - nodes.y[row]), sin_h = std::sqrt(nodes.y[row]);
         const double phi_max = MaxPhi(cos_i, sin_i, cos_h, sin_h);
-        for (int k = 0; k < nodes.s; ++k) {
-          const double s = static_cast<double>(k) / (nodes.s - 1);
-          const double phi = (anisotropic ? 2 * s - 1 : s) * phi_max;
-          const double wi_h = cos_i * cos_h + sin_i * sin_h * std::cos(phi);
-          const double phi_h = phi_i + phi;
-          const double h[] = {sin_h * std::cos(phi_h), sin_h * std::sin(phi_h), cos_h};
-          Vector wo;
-          for (int a = 0; a < 3; ++a) wo[a] = static_cast<Real>(2 * wi_h * h[a] - wi[a]);
-          wo[2] = std::max(wo[2], static_cast<Real>(least_cosine));
-          const double scale =
-              phi_max > 0 ? wo[2] * 4 * wi_h * phi_max / std::max(cos_h, least_cosine) : 0;
-          prepared.LobeValues(wi, wo, lobes.data());
-          std::array<double, kChannels> value{};
-          for (int m = 0; m < prepared.lobes(); ++m) {
-            for (int c = 0; c < kChannels; ++c) value[c] += lobes[m][c] * scale;
+        if (!(phi_max > 0)) continue;  // no wo is above the surface
+        const double first = anisotropic ? -phi_max : 0;
+        const double step = (phi_max - first) / static_cast<double>(size - 1);
+        const double cos_step = std::cos(step), sin_step = std::sin(step);
+        double cos_phi = std::cos(first), sin_phi = std::sin(first);
+        for (size_t k = 0; k < size; ++k) {
+          const double twice_wi_h = 2 * (cos_i * cos_h + sin_i * sin_h * cos_phi);
+          const double along = twice_wi_h * sin_h * cos_phi - sin_i;
+          const double across = twice_wi_h * sin_h * sin_phi;
+          const double cos_o = std::max(twice_wi_h * cos_h - cos_i, least_cosine);
+          out[k] = {static_cast<Real>(along * cos_phi_i - across * sin_phi_i),
+                    static_cast<Real>(along * sin_phi_i + across * cos_phi_i),
+                    static_cast<Real>(cos_o)};
+          scale[k] = cos_o * 2 * twice_wi_h * phi_max / std::max(cos_h, least_cosine);
+          const double next = cos_phi * cos_step - sin_phi * sin_step;
+          sin_phi = sin_phi * cos_step + cos_phi * sin_step;
+          cos_phi = next;
+        }
+        prepared.Values(in, out, f);
+        for (size_t k = 0; k < size; ++k) {
+          double sum = 0;
+          for (int c = 0; c < kChannels; ++c) {
+            sum += std::max(static_cast<double>(f[k][c] - prepared.diffuse()[c]), 0.0);
           }
-          for (double& x : value) x = std::max(x, 0.0);
-          values.push_back(static_cast<float>(Mean(value)));
+          row_values[k] = static_cast<float>(sum * std::max(scale[k], 0.0) / kChannels);
         }
       }
     }
