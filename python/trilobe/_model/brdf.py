@@ -212,7 +212,8 @@ class Brdf:
     def albedo(self, wi: Any) -> Floats:
         """The share of the light from wi that is reflected, (..., 3).
 
-        Within 1.5 % up to 75 degrees from the normal, 3 % up to 85. The first call of a model takes up to a second.
+        Within 0.5 % at all angles of bundled anisotropic models, and of others 1.5 % up to 75 degrees from the normal
+        and 3 % up to 85. The first call of a model takes up to a second.
         """
         (wi,) = of_one_precision(wi=wi)
         check_width(wi, "wi", 3, "directions")
