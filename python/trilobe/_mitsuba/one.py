@@ -28,7 +28,7 @@ class OnePair:
         out = np.zeros((1, 3), np.float32)
         if wi[0, 2] > 0 and wo[0, 2] > 0:
             self._material.eval(wi, wo, out, False)
-        return out[0]
+        return out.ravel()
 
     def pdf(self, wi: Floats, wo: Floats) -> float:
         """The density of wo [1/sr]."""
@@ -44,4 +44,4 @@ class OnePair:
         if wi[0, 2] > 0:
             numbers = np.array(((min(u.x, _BELOW_ONE), min(u.y, _BELOW_ONE)),), np.float32)
             self._material.sample(wi, numbers, out)
-        return out[0]
+        return out.ravel()
