@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import trilobe
+from trilobe._model.error import in_keywords
 
 from models import anisotropic, directions, independent, isotropic, lambertian, literal, stretched
 
@@ -347,6 +348,20 @@ def test_errors_have_a_kind_and_facts():
     with pytest.raises(trilobe.Error) as caught:
         isotropic().eval([0, 0, 1], [0, 0, 0, 1])
     assert (caught.value.kind, caught.value.key) == ("mismatch", "wo")
+
+
+@pytest.mark.parametrize(("flags", "keywords"), [
+    ("--model=auto has starts; leave out --nodes, --d_nodes and --raw.",
+     'model="auto" has starts; leave out nodes=, d_nodes= and raw=True.'),
+    ("--tilt=a lot: give a number", 'tilt="a lot": give a number'),
+    ("x.csv: give --columns=theta_i,f or '--columns=phi_o=a b', --scale=0.3183.",
+     'x.csv: give columns="theta_i,f" or columns="phi_o=a b", scale=0.3183.'),
+    ("--theta_i=DEGREES gives it; --nodiagnose saves time (--data_seed)",
+     "theta_i=DEGREES gives it; diagnose=False saves time (seed=)"),
+    ("cannot read '/a/--lobes/b--c.csv': --- is no number", "cannot read '/a/--lobes/b--c.csv': --- is no number"),
+])
+def test_messages_of_the_program_name_keywords(flags, keywords):
+    assert in_keywords(flags) == keywords
 
 
 def test_many_threads_may_use_one_model():
