@@ -19,7 +19,7 @@ from trilobe._fitting.uncertainty import MOST, Uncertainty, uncertainty
 from trilobe._model.brdf import Brdf
 from trilobe._model.error import Error
 from trilobe._model.files import make_folder, printable, text_of_path, write_text
-from trilobe._model.pictures import page
+from trilobe._model.pictures import page, plots
 
 _FOUND = {
     "converged": "an iteration changed E by less than the tolerance",
@@ -296,8 +296,7 @@ class Result(Mapping[str, Any]):
 
     def _repr_html_(self) -> str:
         """The verdict, numbers and pictures, as notebooks show them."""
-        from trilobe import plot
-
+        plot = plots()
         rows = {
             "measurement": str(self.report["source"]),
             "E": f"{self.fun:.4g}",

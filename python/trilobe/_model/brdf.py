@@ -16,7 +16,7 @@ from trilobe._model.arrays import Floats, check_width, common_shape, of_one_prec
 from trilobe._model.error import Error
 from trilobe._model.files import printable, text_of_path, write_text
 from trilobe._model.model_text import AXIS, POLAR, text_of_model
-from trilobe._model.pictures import page
+from trilobe._model.pictures import page, plots
 from trilobe._model.table import Table
 
 CHANNELS = ("red", "green", "blue")
@@ -355,8 +355,7 @@ class Brdf:
 
     def _repr_html_(self) -> str:
         """The tables, and the model on a sphere where what draws that is installed, as notebooks show them."""
-        from trilobe import plot
-
+        plot = plots()
         drawings = {
             "D, F and G": (*plot.size_of_factors(self), lambda figure: plot.factors(self, figure)),
             "the model on a sphere": (3.2, 3.4, lambda figure: plot.spheres(self, None, figure)),

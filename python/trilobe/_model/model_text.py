@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,18 +12,31 @@ from trilobe._model.arrays import as_array
 from trilobe._model.error import Error
 from trilobe._model.table import Table
 
-if TYPE_CHECKING:
-    from trilobe._model.brdf import Brdf
-
 POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
 AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
+
+
+class Form(Protocol):
+    """What plain arrays take from another model."""
+
+    _material: Any
+
+    @property
+    def lobes(self) -> int:
+        """The number of specular lobes."""
+        ...
+
+    @property
+    def stretch(self) -> list[tuple[float, float]]:
+        """The exponents of each lobe."""
+        ...
 
 
 def text_of_model(
     d: ArrayLike,
     s: ArrayLike,
     tables: dict[str, ArrayLike],
-    like: Brdf | None,
+    like: Form | None,
     stretch: Any,
 ) -> str:
     """The text of the file of a model of these tables, whose form is that of `like` where arrays do not say it.
@@ -76,7 +89,7 @@ def text_of_model(
 
 
 def _axis_of(
-    name: str, given: ArrayLike, like: Brdf | None, lobes: int
+    name: str, given: ArrayLike, like: Form | None, lobes: int
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """The values in the shape that a file has, and the axis."""
     array = as_array(given, name).astype(np.float64)
@@ -127,7 +140,7 @@ def _axis_by_names(name: str, table: Table) -> dict[str, Any]:
     return axis
 
 
-def _stretch_of(stretch: Any, like: Brdf | None, lobes: int) -> Any:
+def _stretch_of(stretch: Any, like: Form | None, lobes: int) -> Any:
     if stretch is None:
         pairs = like.stretch if like is not None and like.lobes == lobes else []
         if not any(x != 0 for pair in pairs for x in pair):

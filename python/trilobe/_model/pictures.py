@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+import importlib
 import io
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -12,6 +13,11 @@ from trilobe._model.error import Error
 
 Drawing = tuple[float, float, Callable[[Any], Any]]
 """Width and height [inches], and what draws into a figure of that size; it is left out if that raises Error."""
+
+
+def plots() -> Any:
+    """`trilobe.plot`, which knows all that it draws: loaded when it is first needed, as the package does it."""
+    return importlib.import_module("trilobe.plot")
 
 
 def page(title: str, rows: Mapping[str, str], drawings: Mapping[str, Drawing]) -> str:
