@@ -60,7 +60,8 @@ NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
 FILES = ["docs/figures.txt", "experiments/*/figures.txt"]
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
 # Sources that decide how a fit of a table comes out. Left out are sampling by renderers, flags that change a
-# measurement, reports on it, and readers of samples on no grid, by the names of folders before and after they were joined.
+# measurement, reports on it, and readers of samples on no grid, by the names of folders before and after they were
+# joined.
 CORRUPTION = ("corrupt*", "kinds*", "misaligned.cc", "readings*")
 FITS = ["src/model", "src/solvers", "src/fit",
         *(f":(exclude)src/model/{name}" for name in
@@ -73,7 +74,8 @@ FITS = ["src/model", "src/solvers", "src/fit",
 FINISH = [f":(exclude)src/fit/{name}" for name in ("finish", "finish_fit.cc", "held_out*", "prune")]
 UNFINISHED = ("awls_equality", "random_starts", "stiff")
 # Further sources that these experiments depend on.
-EVALUATED = ["src/model/evaluate", *(f"src/model/{name}" for name in ("*bsdf*", "half_vector*", "cover_*", "sampling_*"))]
+EVALUATED = ["src/model/evaluate",
+             *(f"src/model/{name}" for name in ("*bsdf*", "half_vector*", "cover_*", "sampling_*"))]
 ALSO = {"sampling": EVALUATED, "appearance": EVALUATED, "cloths": EVALUATED,
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
         "robustness": ["src/model/measurement", "src/model/corruption"], "scene": ["src/fit/scene"],

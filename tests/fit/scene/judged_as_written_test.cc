@@ -214,7 +214,7 @@ TEST(JudgedAsWritten, OfAnisotropicMaterials) {
   SceneMaterial material = Material(kCloth);
   ExpectJudgedAsWritten(material, Measured(kCloth));
   material.directions = Within(45);  // a node
-  ExpectJudgedAsWritten(material, Measured(kCloth, 45));
+  ExpectJudgedAsWritten(material, Measured(kCloth, 45), /*budgets=*/1);
 }
 
 TEST(JudgedAsWritten, OfScatteredSamples) {
