@@ -7,9 +7,9 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 venv=build/renderer
-if ! "$venv/bin/python" -c 'import MaterialX, mitsuba, pytest' 2>/dev/null; then
+if ! "$venv/bin/python" -c 'import MaterialX, mitsuba, pxr, pytest' 2>/dev/null; then
   export PIP_RETRIES=1 PIP_DEFAULT_TIMEOUT=15 PIP_DISABLE_PIP_VERSION_CHECK=1
-  if ! { experiments/renderer/setup "$venv" && "$venv/bin/pip" install --quiet materialx pytest ruff; }; then
+  if ! { experiments/renderer/setup "$venv" && "$venv/bin/pip" install --quiet materialx pytest ruff usd-core; }; then
     echo "left out: PyPI cannot be reached or has no Mitsuba for this machine, so files for renderers are not tested in it"
     exit 0
   fi

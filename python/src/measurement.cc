@@ -198,7 +198,7 @@ Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const N
   if (file.model.spec().anisotropic() && !WritableFormat(path).holds_anisotropic) {
     throw ErrorIn(ErrorKind::kUnsupported, path,
                   "an anisotropic model is written as .bin (UTIA's directions), .csv, "
-                  ".bsdf, .zemax.bsdf, .xml, .glsl, .hlsl, .mtlx, .principled.json or .gltf")
+                  ".bsdf, .zemax.bsdf, .xml, .glsl, .hlsl, .mtlx, .principled.json, .gltf or .usda")
         .About("anisotropic");
   }
   const Measurement measurement =

@@ -40,10 +40,10 @@ DEFINE_double(error, 0,
 DEFINE_string(at, "",
               "for a model and a .csv file: a measurement, at whose directions the values of both "
               "are written, side by side");
-DEFINE_bool(
-    picture, false,
-    "for a .mtlx, .principled.json or .gltf file: draw the model and the file's material, side "
-    "by side, into a .png beside it");
+DEFINE_bool(picture, false,
+            "for a .mtlx, .principled.json, .gltf or .usda file: draw the model and the file's "
+            "material, side "
+            "by side, into a .png beside it");
 
 namespace trilobe {
 namespace {
@@ -95,8 +95,8 @@ void CheckRendererFlags(const std::string& path) {
     if (IsStandardMaterial(path) || IsDefault(flag)) continue;
     throw Error(ErrorKind::kConflict,
                 "--" + std::string(flag) +
-                    " goes with an --out that ends in .mtlx, .principled.json or "
-                    ".gltf")
+                    " goes with an --out that ends in .mtlx, .principled.json, "
+                    ".gltf or .usda")
         .About(flag);
   }
 }
@@ -304,8 +304,8 @@ Command ConvertCommand() {
           ".glsl or .hlsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the "
           "nearest "
           "OpenPBR of MaterialX, in\n.principled.json that of Blender's Principled BSDF, and in "
-          ".gltf "
-          "metallic, roughness and base colour for engines, on a sphere, with "
+          ".gltf or .usda "
+          "metallic, roughness and base colour for engines and USD's preview, on a sphere, with "
           "how near it is. A FILE with another ending is an error.\nWith "
           "--at=MEASUREMENT it writes a row per sample of that, with theta_i, phi_i, theta_o and "
           "phi_o [degrees] and the\nmeasured and the model's values [1/sr], to a FILE that ends in "

@@ -67,7 +67,7 @@ std::string RequiredMeasurementOut(const std::string& command) {
     throw error.WithMessage("--out=" + std::string(error.what()) +
                             (command == "convert"
                                  ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, "
-                                   ".mtlx, .principled.json or .gltf for "
+                                   ".mtlx, .principled.json, .gltf or .usda for "
                                    "renderers and optical design"
                                  : ""));
   }

@@ -432,7 +432,7 @@ TEST(ConvertTest, WritesStandardMaterials) {
               "there is no folder '");
   ExpectError(
       RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.bsdf"), "--picture"}),
-      "--picture goes with an --out that ends in .mtlx, .principled.json or .gltf");
+      "--picture goes with an --out that ends in .mtlx, .principled.json, .gltf or .usda");
   ExpectError(
       RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.mtlx"), "--error=0.1"}),
       "--error goes with an --out that ends in .bsdf");

@@ -52,7 +52,7 @@ def writing_commands(harness):
         "view": (["view", model, source], "out/page.html"),
     }
     for ending in ("binary", "csv", "bsdf", "zemax.bsdf", "xml", "xompt", "glsl", "hlsl", "mtlx", "principled.json",
-                   "gltf"):
+                   "gltf", "usda"):
         more = {"csv": ["--max_angle=30"], "mtlx": ["--picture"]}.get(ending, [])
         commands["convert." + ending] = (["convert", model, *more], "out/felt." + ending)
     for material, ending in (("felt", "binary"), ("linen", "bin"), ("felt@6x12", "csv")):

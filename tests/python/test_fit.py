@@ -276,7 +276,7 @@ BAD = [
     (lambda: trilobe.Measurement("x", [[0, 0, 1]], [1.0]), "wi has the dtype"),
     (lambda: trilobe.score(None, SMALL), "must be a trilobe.Brdf"),
     (lambda: trilobe.convert(isotropic(), "x.png"), "writes no '.png'.*[.]bsdf.*[.]mtlx.*[.]glsl or [.]hlsl$"),
-    (lambda: trilobe.convert(SMALL, "x.zip"), "writes no '.zip'.*[.]binary.*[.]xompt.* or [.]gltf$"),
+    (lambda: trilobe.convert(SMALL, "x.zip"), "writes no '.zip'.*[.]binary.*[.]xompt.* or [.]usda$"),
     (lambda: trilobe.convert(isotropic(), "x.JSON"), r"model\.save\(path\) writes a model file"),
     (lambda: trilobe.convert(SMALL, "x.glsl"), "fit it first"),
     (lambda: trilobe.convert(SMALL, "x.bsdf", error=2), "error must be from 0 to 1"),

@@ -62,3 +62,22 @@ def test_mitsubas_principled_is_as_bright_as_the_model(mitsuba: Any, files: Path
                 for k, bsdf in enumerate((standard, measured)):
                     sums[k] += np.array(bsdf.eval(context, at, wo)) * math.sin(theta_o)
     assert np.allclose(sums[0], sums[1], rtol=0.15), sums
+
+
+def test_usd_takes_the_layer(files: Path) -> None:
+    """All of USD's own validators have nothing to say, and its shader is found at the sphere."""
+    validation = pytest.importorskip("pxr.UsdValidation", reason="usd-core is not installed")
+    from pxr import Usd, UsdShade
+
+    for model in ("plastic", "metal"):
+        path = files / f"{model}.usda"
+        said = run("convert", files / f"{model}.json", f"--out={path}")
+        stage = Usd.Stage.Open(str(path))
+        context = validation.ValidationContext(validation.ValidationRegistry().GetOrLoadAllValidators())
+        assert [error.GetMessage() for error in context.Validate(stage)] == []
+        bound = UsdShade.MaterialBindingAPI(stage.GetPrimAtPath("/World/Sphere")).ComputeBoundMaterial()[0]
+        surface = bound.ComputeSurfaceSource()[0]
+        assert surface.GetShaderId() == "UsdPreviewSurface"
+        given = {value.GetBaseName(): value.Get() for value in surface.GetInputs()}
+        assert f"metallic {given['metallic']:.3g}, roughness {given['roughness']:.3g} " in said
+        assert said.split("sphere ")[1].split(";")[0] in stage.GetRootLayer().documentation

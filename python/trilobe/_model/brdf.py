@@ -22,8 +22,8 @@ from trilobe._model.table import Table
 CHANNELS = ("red", "green", "blue")
 # What `convert` writes, by the endings of names.
 FORMATS = (
-    ".binary", ".bin", ".csv", ".bsdf", ".zemax.bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".gltf", ".glsl",
-    ".hlsl",
+    ".binary", ".bin", ".csv", ".bsdf", ".zemax.bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".gltf", ".usda",
+    ".glsl", ".hlsl",
 )
 _ALBEDO_ERROR = 0.03  # error of Brdf.albedo, up to 85 degrees
 

@@ -4,8 +4,10 @@
 #include <cctype>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <ostream>
+#include <string_view>
 
 #include "core/base/file_names.h"
 #include "core/base/text.h"
@@ -14,6 +16,7 @@
 #include "fit/export/gltf_material.h"
 #include "fit/export/nearest_open_pbr.h"
 #include "fit/export/open_pbr.h"
+#include "fit/export/usd_material.h"
 #include "io/formats/completed_measurement.h"
 #include "io/formats/databases/utia_file.h"
 #include "io/formats/exports/exported_brdf.h"
@@ -47,6 +50,7 @@ constexpr const char* kHlslEnding = ".hlsl";
 constexpr const char* kMaterialXEnding = ".mtlx";
 constexpr const char* kPrincipledEnding = ".principled.json";
 constexpr const char* kGltfEnding = ".gltf";
+constexpr const char* kUsdEnding = ".usda";
 
 bool EndsIn(const std::string& path, const std::string& ending) {
   if (path.size() <= ending.size()) return false;
@@ -137,19 +141,34 @@ std::string WriteExported(const ExportedBrdf& brdf, const std::string& than, dou
   return write(file, "Zemax BSDF of " + angles, "XYZ");
 }
 
-using Shading = std::function<Rgb(const DirectionPair&)>;
+// A file of the nearest standard material.
+struct StandardFormat {
+  const char* ending;
+  StandardShading shading;
+  const char* nearest;  // what the nearest one is called
+  std::string (*format)(const OpenPbr&, const MaterialNotes&);
+  std::string (*told)(const OpenPbr&);  // what it has
+};
 
-// ".mtlx", ".principled.json" or ".gltf".
-std::string EndingOfStandard(const std::string& path) {
-  for (const char* const ending : {kMaterialXEnding, kPrincipledEnding, kGltfEnding}) {
-    if (EndsIn(path, ending)) return ending;
-  }
-  return "";
+const StandardFormat* StandardFormatOf(const std::string& path) {
+  static const StandardFormat formats[] = {
+      {kMaterialXEnding, StandardShading::kOpenPbr, "OpenPBR", FormatMaterialX,
+       [](const OpenPbr& /*material*/) { return std::string("open_pbr_surface"); }},
+      {kPrincipledEnding, StandardShading::kOpenPbr, "OpenPBR", FormatPrincipled,
+       [](const OpenPbr& /*material*/) {
+         return std::string("inputs of Blender's Principled BSDF");
+       }},
+      {kGltfEnding, StandardShading::kGltf, "material of glTF", FormatGltf, EngineText},
+      {kUsdEnding, StandardShading::kPreviewSurface, "UsdPreviewSurface", FormatUsd, EngineText}};
+  const auto found = std::ranges::find_if(
+      formats, [&](const StandardFormat& format) { return EndsIn(path, format.ending); });
+  return found == std::end(formats) ? nullptr : found;
 }
 
 // The two, side by side.
 void DrawStandard(const FactorModel& model, const std::string& source, double max_angle,
-                  const Shading& brdf, const std::string& path, AppearanceOptions options) {
+                  const std::function<Rgb(const DirectionPair&)>& brdf, const std::string& path,
+                  AppearanceOptions options) {
   options.size = 160;  // half the pixels of each sphere
   Measurement shown = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
   LimitAngles(DegreesToRadians(max_angle), &shown);
@@ -173,39 +192,32 @@ std::string FittedTo(const ModelFile& file, const std::string& source) {
 // Writes the nearest material of renderers that have no other to a model.
 std::vector<std::string> WriteStandard(const ModelFile& file, const std::string& source,
                                        const std::string& path, const ConvertOptions& options) {
-  const bool materialx = EndsIn(path, kMaterialXEnding), gltf = EndsIn(path, kGltfEnding);
+  const StandardFormat& format = *StandardFormatOf(path);
   const double max_angle = MaxAngleOf(file);
   Stopwatch stopwatch;
-  options.on_stage(gltf ? "finding the nearest material of glTF" : "finding the nearest OpenPBR");
-  const NearestOpenPbr nearest =
-      FindNearestOpenPbr(file.model, DegreesToRadians(max_angle), options.appearance,
-                         gltf ? StandardShading::kGltf : StandardShading::kOpenPbr);
+  options.on_stage(std::string("finding the nearest ") + format.nearest);
+  const NearestOpenPbr nearest = FindNearestOpenPbr(file.model, DegreesToRadians(max_angle),
+                                                    options.appearance, format.shading);
   const SphereError& error = nearest.error;
   const std::string name = std::filesystem::path(path).filename().string();
   const MaterialNotes notes = {
-      .name = name.substr(0, name.size() - EndingOfStandard(path).size()),
-      .made = std::string("the nearest ") + (gltf ? "material of glTF" : "OpenPBR") + " to " +
-              FileNameOf(source) + FittedTo(file, source) + ", found by " + options.program,
+      .name = name.substr(0, name.size() - std::string_view(format.ending).size()),
+      .made = std::string("the nearest ") + format.nearest + " to " + FileNameOf(source) +
+              FittedTo(file, source) + ", found by " + options.program,
       .error = "beside it on a sphere Delta E is " + Text(error.mean_delta_e, 2) +
                " in the mean, below " + Text(error.delta_e_95, 2) + " for 95 %, PSNR " +
                Text(error.psnr_db, 3) + " dB",
       .lost = VerdictOf(error).visibility == Visibility::kNone
                   ? "lost against the model: nothing to be seen"
                   : "lost against the model, " + Words(VerdictOf(error))};
-  const std::string text = materialx ? FormatMaterialX(nearest.material, notes)
-                           : gltf    ? FormatGltf(nearest.material, notes)
-                                     : FormatPrincipled(nearest.material, notes);
+  const std::string text = format.format(nearest.material, notes);
   WriteFile(path, [&](std::ostream& out) { out << text; });
-  std::vector<std::string> lines = {"wrote " + path + ": " +
-                                    (materialx ? "open_pbr_surface"
-                                     : gltf    ? EngineText(nearest.material)
-                                               : "inputs of Blender's Principled BSDF") +
-                                    ", " + notes.error + "; " + notes.lost + " (" +
+  std::vector<std::string> lines = {"wrote " + path + ": " + format.told(nearest.material) + ", " +
+                                    notes.error + "; " + notes.lost + " (" +
                                     Text(stopwatch.Lap(), 2) + " s)"};
   if (!options.picture.empty()) {
-    const Shading brdf =
-        gltf ? Shading(GltfBrdf(nearest.material)) : Shading(OpenPbrBrdf(nearest.material));
-    DrawStandard(file.model, source, max_angle, brdf, options.picture, options.appearance);
+    DrawStandard(file.model, source, max_angle, StandardBrdf(format.shading, nearest.material),
+                 options.picture, options.appearance);
     lines.push_back("wrote " + options.picture + ": the model, and what the file has");
   }
   return lines;
@@ -239,7 +251,7 @@ bool IsTensorFile(const std::string& path) {
 
 bool TakesError(const std::string& path) { return EndingOf(path) == kTensorEnding; }
 
-bool IsStandardMaterial(const std::string& path) { return !EndingOfStandard(path).empty(); }
+bool IsStandardMaterial(const std::string& path) { return StandardFormatOf(path) != nullptr; }
 
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options) {

@@ -80,12 +80,15 @@ struct Closures {
 
 constexpr int kDiffuseRoughness = 3, kAnisotropy = 12;
 
-// glTF's diffuse term is Lambert's.
+// The diffuse term of glTF and of USD's preview is Lambert's.
 Free WhatThereIs(bool anisotropic, StandardShading shading) {
   Free all(kMost);
   std::iota(all.begin(), all.end(), 0);
   if (!anisotropic) std::erase(all, kAnisotropy);
-  if (shading == StandardShading::kGltf) std::erase(all, kDiffuseRoughness);
+  if (shading != StandardShading::kOpenPbr) std::erase(all, kDiffuseRoughness);
+  if (shading == StandardShading::kPreviewSurface) {
+    for (const int k : {5, 6, 7, 10, 11, kAnisotropy}) std::erase(all, k);
+  }
   return all;
 }
 
@@ -123,15 +126,6 @@ std::vector<Closures> SimplerClosures(const Free& all) {
     std::erase_if(one.free, [&](int k) { return !has(k); });
   }
   return simpler;
-}
-
-// --- Shading -------------------------------------------------------------------------------------
-
-using Shaded = std::function<Rgb(const DirectionPair&)>;
-
-Shaded ShadedBy(StandardShading shading, const OpenPbr& material) {
-  if (shading == StandardShading::kGltf) return GltfBrdf(material);
-  return OpenPbrBrdf(material);
 }
 
 // --- Comparison ----------------------------------------------------------------------------------
@@ -204,7 +198,7 @@ class SumsCost : public ceres::CostFunction {
         steps[k - 1] = x[k - 1] > middle ? -kStep : kStep;
         x[k - 1] += steps[k - 1];
       }
-      seen[k] = sums_.Evaluate(ShadedBy(sums_.shading, Unpack(x.data(), free_, start_)));
+      seen[k] = sums_.Evaluate(StandardBrdf(sums_.shading, Unpack(x.data(), free_, start_)));
     });
     for (int j = 0; j < sums_.size(); ++j) {
       for (int c = 0; c < kChannels; ++c) {
@@ -363,6 +357,10 @@ std::vector<OpenPbr> Starts(const Prepared& model, StandardShading shading) {
                       .coat_weight = 0.1,
                       .coat_roughness = roughness / 2});
   }
+  if (shading == StandardShading::kPreviewSurface) {
+    for (OpenPbr& start : starts) WithoutTint(&start);
+    return starts;
+  }
   if (!model.anisotropic()) return starts;
   std::vector<OpenPbr> turned;
   for (OpenPbr start : starts) {
@@ -377,6 +375,12 @@ std::vector<OpenPbr> Starts(const Prepared& model, StandardShading shading) {
 }
 
 }  // namespace
+
+std::function<Rgb(const DirectionPair&)> StandardBrdf(StandardShading shading,
+                                                      const OpenPbr& material) {
+  if (shading == StandardShading::kOpenPbr) return OpenPbrBrdf(material);
+  return GltfBrdf(material);
+}
 
 NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
                                   const AppearanceOptions& options, StandardShading shading) {
@@ -395,12 +399,12 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
   const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
   const auto distance = [&](const OpenPbr& material) {
     double sum = 0;
-    const std::vector<Rgb> seen = sphere.Evaluate(ShadedBy(shading, material));
+    const std::vector<Rgb> seen = sphere.Evaluate(StandardBrdf(shading, material));
     for (int j = 0; j < sphere.size(); ++j) sum += LabDifference(seen[j], sphere.expected[j]);
     return sum;
   };
   const auto rendered = [&](const OpenPbr& material) {
-    const Shaded brdf = ShadedBy(shading, material);
+    const auto brdf = StandardBrdf(shading, material);
     const SphericalBrdf materials[] = {
         [&](const SphericalAngles& at) { return value(ToDirections(at)); },
         [&](const SphericalAngles& at) { return brdf(ToDirections(at)); }};

@@ -1,15 +1,24 @@
 #ifndef TRILOBE_FIT_EXPORT_NEAREST_OPEN_PBR_H_
 #define TRILOBE_FIT_EXPORT_NEAREST_OPEN_PBR_H_
 
+#include <functional>
+
 #include "fit/export/open_pbr.h"
+#include "trilobe/core/base/channels.h"
+#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
 
-// Who shades a standard material: MaterialX and Blender, or glTF's renderers (GltfBrdf), which have
-// no rough diffuse term and lose light that is scattered more than once.
-enum class StandardShading { kOpenPbr, kGltf };
+// Who shades a standard material: MaterialX and Blender; glTF's renderers (GltfBrdf), which have no
+// rough diffuse term and lose light that is scattered more than once; or USD's preview, which does
+// as these and has no tint, anisotropy and coat.
+enum class StandardShading { kOpenPbr, kGltf, kPreviewSurface };
+
+// BRDF [1/sr] of a standard material as it is shaded.
+std::function<Rgb(const DirectionPair&)> StandardBrdf(StandardShading shading,
+                                                      const OpenPbr& material);
 
 // The standard material that looks most like a model.
 struct NearestOpenPbr {

@@ -25,22 +25,22 @@ struct ConvertOptions {
 
 // Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .zemax.bsdf
 // (OpticStudio's table), .xml (Klems matrices of Radiance and WINDOW), .xompt (OpenMATERIAL 3D),
-// .glsl, .hlsl, .mtlx (MaterialX), .principled.json (Blender's Principled BSDF) or .gltf.
+// .glsl, .hlsl, .mtlx (MaterialX), .principled.json (Blender's Principled BSDF), .gltf or .usda.
 bool IsForRenderer(const std::string& path);
 // Whether it is .bsdf and not .zemax.bsdf.
 bool IsTensorFile(const std::string& path);
 // Whether ConvertOptions::error counts: .bsdf and .zemax.bsdf.
 bool TakesError(const std::string& path);
-// Whether the extension is .mtlx, .principled.json or .gltf, which hold the nearest standard
+// Whether the extension is .mtlx, .principled.json, .gltf or .usda, which hold the nearest standard
 // material.
 bool IsStandardMaterial(const std::string& path);
 
 // Writes a model or a measurement in the format of the path's extension. Returns lines that say
 // what was written and its error. A measurement is fitted first, which takes seconds: .bsdf,
 // .xml and .xompt files hold the measured values, and the model's where nothing was measured;
-// .mtlx, .principled.json and .gltf are nearest to the model. `source` names the model in messages.
-// Throws Error, also for a measurement to .glsl or .hlsl, for an anisotropic one to .xompt, and if
-// the file cannot be written.
+// .mtlx, .principled.json, .gltf and .usda are nearest to the model. `source` names the model in
+// messages. Throws Error, also for a measurement to .glsl or .hlsl, for an anisotropic one to
+// .xompt, and if the file cannot be written.
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options);
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
