@@ -83,7 +83,8 @@ def test_converts_anything(tmp_path_factory, what, path, options):
 @pytest.mark.skipif(CALLS < 60, reason="takes long")
 @hypothesis.settings(settings, max_examples=max(CALLS // 10, 1))  # some take a second
 @hypothesis.given(st.one_of(models, st.just(TINY)), st.sampled_from(
-    ["a.bsdf", "a.mtlx", "a.principled.json", "a.gltf", "a.usda", "a.zemax.bsdf", "a.xml", "a.binary", "a.bin", "a.xompt"]),
+    ["a.bsdf", "a.mtlx", "a.principled.json", "a.gltf", "a.usda", "a.zemax.bsdf", "a.xml", "a.binary", "a.bin",
+     "a.xompt"]),
     st.fixed_dictionaries({}, optional={"error": st.floats(), "spectral": st.booleans(), "threads": st.integers()}))
 def test_converts_for_renderers(tmp_path_factory, what, path, options):
     os.chdir(tmp_path_factory.getbasetemp())

@@ -348,8 +348,8 @@ def convert(
     ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples. ".bsdf" is an RGL tensor file for renderers as
     Mitsuba's `measured`, ".zemax.bsdf" a table for OpticStudio, ".xml" Klems matrices for Radiance and WINDOW, ".xompt"
     an isotropic table for OpenMATERIAL 3D, ".mtlx", ".principled.json", ".gltf" and ".usda" the nearest material of
-    MaterialX, Blender, glTF and USD's preview; for a measurement a model is fitted for that, which takes seconds. ".glsl" and ".hlsl" are
-    shaders, of models alone.
+    MaterialX, Blender, glTF and USD's preview; for a measurement a model is fitted for that, which takes seconds.
+    ".glsl" and ".hlsl" are shaders, of models alone.
 
     Args:
         what: a model or a measurement, or the file of one, "material:NAME" or "synth:NAME".
