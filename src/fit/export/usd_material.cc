@@ -20,12 +20,12 @@ std::string Identifier(const std::string& name) {
 
 // A string of several lines. Quotes and backslashes are escaped.
 std::string Quoted(const std::string& text) {
-  std::string quoted = "\"\"\"";
+  std::string quoted = R"(""")";
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
     quoted += c;
   }
-  return quoted + "\"\"\"";
+  return quoted + R"(""")";
 }
 
 }  // namespace

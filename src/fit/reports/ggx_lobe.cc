@@ -34,7 +34,7 @@ T Distribution(const FacetNode& node, const T& alpha_x, const T& alpha_y, const 
   const T c = cos(turn), s = sin(turn);
   const T x = (c * node.x + s * node.y) / alpha_x, y = (c * node.y - s * node.x) / alpha_y;
   const T q = x * x + y * y + node.z * node.z;
-  return T(1) / (kPi * alpha_x * alpha_y * q * q);
+  return 1.0 / (kPi * alpha_x * alpha_y * q * q);
 }
 
 struct DistributionCost {
@@ -47,7 +47,7 @@ struct DistributionCost {
     using std::sqrt;
     const T* const p = parameters[0];
     const T alpha_x = exp(p[0]), alpha_y = size == kIsotropic ? alpha_x : exp(p[1]);
-    const T turn = size == kIsotropic ? T(0) : p[2];
+    const T turn = size == kIsotropic ? T{0.0} : p[2];
     for (size_t k = 0; k < nodes.size(); ++k) {
       const FacetNode& node = nodes[k];
       residuals[k] = std::sqrt(node.weight) *

@@ -426,8 +426,9 @@ void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const
 
 std::string PngOfSpheres(const PictureData& measured, const Material& fitted,
                          const AppearanceOptions& options) {
-  if (measured.empty())
+  if (measured.empty()) {
     return PngOf(ToneMappedAlone(RenderPicture(fitted, options), options.size, 0));
+  }
   const ImagePairs images =
       measured.nodes ? RenderPicture(*measured.nodes, fitted.spherical, Shape::kSphere, options)
                      : RenderPicture(*measured.table, fitted.angular, options);
