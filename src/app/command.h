@@ -40,6 +40,7 @@ Command ConvertCommand();
 Command FitCommand();
 Command InfoCommand();
 Command MaterialsCommand();
+Command MeasureCommand();
 Command PlanCommand();
 Command PlotCommand();
 Command ScoreCommand();

@@ -32,10 +32,10 @@ namespace trilobe {
 
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = [] {
-    std::vector<Command> all = {FitCommand(),   StudyCommand(),   SolversCommand(),
-                                PlanCommand(),  CompareCommand(), ScoreCommand(),
-                                PlotCommand(),  InfoCommand(),    ConvertCommand(),
-                                SynthCommand(), ViewCommand(),    MaterialsCommand()};
+    std::vector<Command> all = {
+        FitCommand(),   StudyCommand(),     SolversCommand(), PlanCommand(),    CompareCommand(),
+        ScoreCommand(), PlotCommand(),      InfoCommand(),    ConvertCommand(), SynthCommand(),
+        ViewCommand(),  MaterialsCommand(), MeasureCommand()};
     // Whatever writes files can be told to overwrite.
     for (Command& command : all) {
       const auto out = std::ranges::find(command.flags, "out");

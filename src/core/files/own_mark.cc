@@ -24,6 +24,7 @@ constexpr std::array kTables = {
     "problem,method,"sv,               // studies
     "profile,method,"sv,
     "theta_i,phi_i,theta_o,phi_o,measured_r,measured_g,measured_b,fitted_r"sv,  // convert --at
+    "# Directions to measure "sv,                                               // measure
     "# BRDF [1/sr] of "sv};                                                     // measurements
 
 // Files for renderers have one of these near their beginnings.

@@ -1,0 +1,133 @@
+#include "model/measurement/directions_to_measure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "core/base/text.h"
+#include "trilobe/core/base/error.h"
+
+namespace trilobe {
+namespace {
+
+// The digits of a number, mirrored at the point, in [0, 1).
+double RadicalInverse(int base, int64_t number) {
+  double inverse = 0, digit = 1.0 / base;
+  for (; number > 0; number /= base, digit /= base) {
+    inverse += digit * static_cast<double>(number % base);
+  }
+  return inverse;
+}
+
+Direction At(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+Direction Mirrored(const Direction& wi, const Direction& h) {
+  const double twice = 2 * Dot(wi, h);
+  return {twice * h[0] - wi[0], twice * h[1] - wi[1], twice * h[2] - wi[2]};
+}
+
+// Point `number` of the sequence, whether or not the device reaches it.
+DirectionPair Point(int64_t number, const Goniometer& device) {
+  const double theta_h = kPi / 2 * RadicalInverse(2, number);
+  const double u = RadicalInverse(3, number), v = RadicalInverse(5, number);
+  // In the plane of incidence the half vector lies on one side of the normal or the other.
+  const double phi = !device.in_plane ? kPi * v : v < 0.5 ? 0 : kPi;
+  if (device.incidences.empty()) {
+    return ToDirections(HalfDiffAngles{theta_h, device.max_theta * u, phi});
+  }
+  const auto count = static_cast<double>(device.incidences.size());
+  const Direction wi = At(device.incidences[static_cast<size_t>(count * u)], 0);
+  return {wi, Mirrored(wi, At(theta_h, phi))};
+}
+
+double Stepped(double angle, double step) {
+  return step > 0 ? step * std::round(angle / step) : angle;
+}
+
+// The same with the light at phi_i = 0 and the detector on one side, as the device sets it.
+SphericalAngles Set(const DirectionPair& pair, const Goniometer& device) {
+  const SphericalAngles at = ToSphericalAngles(pair);
+  const double phi = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
+  const double stepped = std::min(Stepped(phi, device.step), kPi);
+  return {Stepped(at.theta_i, device.step), 0, Stepped(at.theta_o, device.step),
+          device.in_plane ? (phi < kPi / 2 ? 0 : kPi) : stepped};
+}
+
+bool IsReached(const SphericalAngles& at, const Goniometer& device) {
+  constexpr double kRounding = 1e-9;
+  if (at.theta_i > device.max_theta + kRounding || at.theta_o > device.max_theta + kRounding) {
+    return false;
+  }
+  const DirectionPair pair = ToDirections(at);
+  const double between = std::acos(std::clamp(Dot(pair.wi, pair.wo), -1.0, 1.0));
+  return between >= device.blind - kRounding;
+}
+
+// Equal for directions that say the same of an isotropic material, also exchanged.
+std::array<int64_t, 3> KeyOf(const SphericalAngles& at) {
+  const auto micro = [](double angle) { return std::llround(angle * 1e6); };
+  const auto [least, most] = std::minmax(at.theta_i, at.theta_o);
+  // Along the normal an azimuth says nothing.
+  return {micro(least), micro(most), least > 1e-6 ? micro(at.phi_o) : 0};
+}
+
+void Check(int count, const Goniometer& device) {
+  const auto refuse = [](const std::string& what, const std::string& name, double value) {
+    throw Error(ErrorKind::kRange, what).About(name, value);
+  };
+  const auto degrees = [](double angle) { return Text(RadiansToDegrees(angle)); };
+  if (count < 1) {
+    refuse(std::to_string(count) + " directions; give 1 or more", "directions", count);
+  }
+  if (!(device.max_theta > 0 && device.max_theta < kPi / 2)) {
+    refuse("theta up to " + degrees(device.max_theta) + " deg; it must be above 0 and below 90",
+           "theta_max", RadiansToDegrees(device.max_theta));
+  }
+  for (const double theta : device.incidences) {
+    if (theta >= 0 && theta <= device.max_theta) continue;
+    refuse("an incidence of " + degrees(theta) + " deg; it must be from 0 to theta_max, " +
+               degrees(device.max_theta),
+           "incidences", RadiansToDegrees(theta));
+  }
+  if (!(device.step >= 0 && device.step <= DegreesToRadians(45))) {
+    refuse("steps of " + degrees(device.step) + " deg; give 0, for any angle, to 45", "step",
+           RadiansToDegrees(device.step));
+  }
+  if (!(device.blind >= 0 && device.blind < kPi)) {
+    refuse("blind within " + degrees(device.blind) + " deg of the light; give 0 to below 180",
+           "blind", RadiansToDegrees(device.blind));
+  }
+}
+
+}  // namespace
+
+std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device) {
+  Check(count, device);
+  // A device that reaches one point in so many reaches hardly any more.
+  const int64_t most = 2000 + 500 * static_cast<int64_t>(count);
+  std::vector<SphericalAngles> directions;
+  std::set<std::array<int64_t, 3>> known;
+  for (int64_t number = 1; number <= most && std::ssize(directions) < count; ++number) {
+    const DirectionPair pair = Point(number, device);
+    if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) continue;
+    const SphericalAngles at = Set(pair, device);
+    if (!IsReached(at, device) || !known.insert(KeyOf(at)).second) continue;
+    directions.push_back(at);
+  }
+  if (std::ssize(directions) < count) {
+    throw Error(ErrorKind::kRange,
+                "the device reaches " + std::to_string(directions.size()) + " of " +
+                    std::to_string(count) +
+                    " directions; ask for fewer, or give it smaller steps, a larger theta_max, a "
+                    "smaller blind cone or more incidences")
+        .About("directions", count);
+  }
+  return directions;
+}
+
+}  // namespace trilobe
