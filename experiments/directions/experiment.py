@@ -53,5 +53,5 @@ def _figure(rows):
 
 def draw(drawn, _):
     """The table and the picture of the page."""
-    rows = drawn["whole"]
+    rows = [row for row in drawn["whole"] if ":" in row["given"]]  # without the fits to whole tables
     return {"summary.md": _summary(rows), "directions": _figure(rows)} if rows else {}
