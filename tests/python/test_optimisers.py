@@ -46,7 +46,9 @@ def test_each_lowers_the_same_e(objective: trilobe.Objective, name: str) -> None
     try:
         methods.METHODS[name](counted)
     except Exception as error:  # the time is over, or NLopt sees no further digit (its own test of convergence)
-        assert counted.seconds >= counted.budget or type(error).__name__ == "RoundoffLimited"
+        # NLopt's MMA may ask for E at NaN when it has converged, as its subproblem has no width then.
+        stepped_to_nan = name == "mma" and "is not finite" in str(error)
+        assert counted.seconds >= counted.budget or type(error).__name__ == "RoundoffLimited" or stepped_to_nan
     assert counted.trace[0]["objective"] == objective.value(start)
     assert counted.lowest < objective.value(start)
     assert objective.value(counted.x) == pytest.approx(counted.lowest, rel=1e-12)
