@@ -12,10 +12,10 @@ namespace {
 using testing::HasSubstr;
 
 TEST(UsdMaterial, HasWhatThePreviewSurfaceTakes) {
-  const OpenPbr material = {.base_color = {0.95, 0.64, 0.54},
-                            .base_metalness = 1,
-                            .specular_roughness = 0.387,
-                            .specular_ior = 1.5};
+  OpenPbr material = {.base_color = {0.95, 0.64, 0.54},
+                      .base_metalness = 1,
+                      .specular_roughness = 0.387,
+                      .specular_ior = 1.5};
   const std::string text = FormatUsd(
       material, {.name = "2 coppers", .made = "of \"x\"", .error = "far off", .lost = "much"});
   EXPECT_THAT(text, testing::StartsWith("#usda 1.0\n"));
@@ -25,7 +25,10 @@ TEST(UsdMaterial, HasWhatThePreviewSurfaceTakes) {
   EXPECT_THAT(text, HasSubstr("inputs:diffuseColor = (0.95, 0.64, 0.54)"));
   EXPECT_THAT(text, HasSubstr("inputs:metallic = 1\n"));
   EXPECT_THAT(text, HasSubstr("inputs:roughness = 0.387\n"));
-  EXPECT_THAT(text, HasSubstr("inputs:ior = 1.5\n"));
+  // A metal has no use for it.
+  EXPECT_THAT(text, testing::Not(HasSubstr("inputs:ior")));
+  material.base_metalness = 0;
+  EXPECT_THAT(FormatUsd(material, {.name = "x"}), HasSubstr("inputs:ior = 1.5\n"));
 }
 
 // It has neither a tint nor a coat, nor two roughnesses.

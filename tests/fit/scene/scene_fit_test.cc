@@ -88,7 +88,7 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   settings.fit.form.lobes = 2;
   settings.appearance = {.lights = 6, .size = 48};
   SceneMaterial material = Material("plastic");
-  material.source = "synth:plastic@20x20x40";
+  material.source = "synth:plastic@30x30x60";
   material.directions = AllDirections();
   material.channels = SceneChannels::kLuminance;
   const auto fitted = [&](SceneBudget::Unit unit, double amount) {
