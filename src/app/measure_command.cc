@@ -25,7 +25,9 @@ DEFINE_double(
 DEFINE_bool(in_plane, false, "the detector stays in the plane of incidence");
 DEFINE_string(incidences, "",
               "angles of incidence that the light has, in degrees: 10,30,50,70; by default any");
-DEFINE_double(step, 0, "all angles are multiples of this, in degrees; 0 for any angle");
+DEFINE_double(
+    step, 0,
+    "all angles but given incidences are multiples of this, in degrees, to 45; 0 for any angle");
 DEFINE_double(blind, 0,
               "least angle between light and detector, which hides the light, in degrees");
 
@@ -67,6 +69,12 @@ int RunMeasure(std::span<const std::string> /*arguments*/) {
   if (FLAGS_out.empty()) {
     Write(directions, std::cout);
     return 0;
+  }
+  if (EndingOf(FLAGS_out) != ".csv") {
+    throw Error(ErrorKind::kUnsupported, "--out=" + FLAGS_out +
+                                             ": directions are CSV; end the "
+                                             "name in .csv")
+        .About("out", FLAGS_out);
   }
   Inputs().CheckOutput(FLAGS_out);
   WriteFile(FLAGS_out, [&](std::ostream& out) { Write(directions, out); });

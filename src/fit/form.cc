@@ -1,6 +1,7 @@
 #include "trilobe/fit/form.h"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -76,11 +77,13 @@ const std::vector<NamedForm>& NamedForms() {
 const NamedForm& FindForm(std::string_view name) {
   // Models of a few numbers are made of those of tables.
   constexpr std::string_view kOfFewNumbers[] = {"ggx", "gltf", "disney", "principled", "openpbr"};
-  if (std::ranges::find(kOfFewNumbers, name) != std::end(kOfFewNumbers)) {
+  std::string lower(name);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (std::ranges::find(kOfFewNumbers, lower) != std::end(kOfFewNumbers)) {
     throw Error(ErrorKind::kUnsupported,
                 "model '" + std::string(name) +
                     "': fits are of tables; roughness, F0 and base colour come from "
-                    "`trilobe convert SOURCE --out=FILE.gltf`, or .mtlx or .principled.json")
+                    "`trilobe convert SOURCE --out=FILE.gltf`, or .usda, .mtlx or .principled.json")
         .About("model", name);
   }
   return FindNamed("model", name, NamedForms());

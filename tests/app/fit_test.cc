@@ -644,7 +644,7 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},
       {{"--model=x"},
        "unknown model 'x'; known: shared, isotropic, anisotropic, independent, auto"},
-      {{"--model=ggx"}, "`trilobe convert SOURCE --out=FILE.gltf`"},
+      {{"--model=GGX"}, "`trilobe convert SOURCE --out=FILE.gltf`"},
       {{"--max_parameters=100"}, "--max_parameters goes with --model=auto"},
       {{"--model=independent", "--max_parameters=100"}, "--max_parameters goes with --model=auto"},
       {{"--model=auto", "--max_parameters=0"}, "it must be at least 1"},

@@ -24,7 +24,6 @@ constexpr std::array kTables = {
     "problem,method,"sv,               // studies
     "profile,method,"sv,
     "theta_i,phi_i,theta_o,phi_o,measured_r,measured_g,measured_b,fitted_r"sv,  // convert --at
-    "# Directions to measure "sv,                                               // measure
     "# BRDF [1/sr] of "sv};                                                     // measurements
 
 // Files for renderers have one of these near their beginnings.
@@ -71,6 +70,18 @@ bool IsOwnJson(std::string_view bytes) {
   }
 }
 
+// Directions to measure: once somebody has written values beside them, the file is theirs.
+bool IsUnfilledPlan(std::string_view bytes) {
+  constexpr std::string_view kColumns = "theta_i,phi_i,theta_o,phi_o\n";
+  const size_t first = bytes.find('\n');
+  if (!bytes.starts_with("# Directions to measure ") || first == std::string_view::npos)
+    return false;
+  const std::string_view table = bytes.substr(first + 1);
+  if (!table.starts_with(kColumns)) return false;
+  const auto lines = std::ranges::count(table, '\n'), commas = std::ranges::count(table, ',');
+  return table.ends_with('\n') && commas == 3 * lines;
+}
+
 bool IsOwnPage(std::string_view bytes) {
   constexpr size_t kHead = 4096;
   return Has(bytes.substr(0, kHead), R"(<meta name="generator" content="trilobe )") ||
@@ -115,6 +126,7 @@ bool SaysOwn(std::string_view bytes) {
   if (bytes.starts_with(kPlanBegins) && Has(bytes.substr(0, bytes.find('\n')), kPlanColumns)) {
     return true;
   }
+  if (IsUnfilledPlan(bytes)) return true;
   if (std::ranges::any_of(kTables, [&](auto head) { return bytes.starts_with(head); })) return true;
   const std::string_view head = bytes.substr(0, kHead),
                          tail = bytes.substr(bytes.size() - std::min(kTail, bytes.size()));

@@ -142,7 +142,7 @@ FromNormal LightFromNormal(const FactorModel& model, int lobe, const GgxLobe& gg
 
 std::optional<GgxLobe> NearestGgx(const FactorModel& model, int lobe) {
   const std::vector<FacetNode> nodes = FacetsOf(model, lobe);
-  if (nodes.empty()) return std::nullopt;
+  if (nodes.empty() || std::ranges::max(model.s(lobe)) <= 0) return std::nullopt;
   std::vector<std::vector<double>> starts;
   for (const double alpha : {0.02, 0.1, 0.4}) {
     if (!model.spec().anisotropic()) {
@@ -170,7 +170,6 @@ std::optional<GgxLobe> NearestGgx(const FactorModel& model, int lobe) {
   }
   ggx.elsewhere = std::min(ggx.elsewhere, 1.0);
   const FromNormal light = LightFromNormal(model, lobe, ggx);
-  if (std::ranges::max(light.lobe) <= 0) return std::nullopt;
   for (int c = 0; c < kChannels; ++c) {
     ggx.f0[c] = std::max((light.lobe[c] - light.rise) / (light.whole - light.rise), 0.0);
   }
@@ -187,8 +186,9 @@ std::string GgxText(const GgxLobe& lobe) {
             of(lobe.alpha_y) + " across";
   }
   return text + ", F0 " + Text(lobe.f0[0], 3) + ", " + Text(lobe.f0[1], 3) + ", " +
-         Text(lobe.f0[2], 3) + "; " + Text(100 * lobe.elsewhere, 2) +
-         " % of its facets stand elsewhere";
+         Text(lobe.f0[2], 3) +
+         (std::ranges::max(lobe.f0) > 1 ? ", above 1 as of no such lobe; " : "; ") +
+         Text(100 * lobe.elsewhere, 2) + " % of its facets stand elsewhere";
 }
 
 }  // namespace trilobe

@@ -22,8 +22,8 @@ struct GgxLobe {
 };
 
 // Finds it by Ceres: the least integral of (sqrt D - sqrt GGX)^2 cos theta_h, both of one facet
-// area, with D the mean of the channels as it is at theta_d = 0. Nothing for a lobe that reflects
-// nothing.
+// area, with D the mean of the channels as it is at theta_d = 0. Nothing for a lobe without facets
+// or strength; F0 is 0 where it reflects nothing along the normal.
 std::optional<GgxLobe> NearestGgx(const FactorModel& model, int lobe);
 
 // "alpha 0.15 (roughness 0.387), F0 0.95, 0.64, 0.54; 3.1 % of its facets stand elsewhere".

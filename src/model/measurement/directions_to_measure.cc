@@ -53,8 +53,10 @@ double Stepped(double angle, double step) {
 SphericalAngles Set(const DirectionPair& pair, const Goniometer& device) {
   const SphericalAngles at = ToSphericalAngles(pair);
   const double phi = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
-  const double stepped = std::min(Stepped(phi, device.step), kPi);
-  return {Stepped(at.theta_i, device.step), 0, Stepped(at.theta_o, device.step),
+  double stepped = Stepped(phi, device.step);
+  if (stepped > kPi + 1e-9) stepped -= device.step;
+  const double theta_i = device.incidences.empty() ? Stepped(at.theta_i, device.step) : at.theta_i;
+  return {theta_i, 0, Stepped(at.theta_o, device.step),
           device.in_plane ? (phi < kPi / 2 ? 0 : kPi) : stepped};
 }
 
@@ -81,8 +83,9 @@ void Check(int count, const Goniometer& device) {
     throw Error(ErrorKind::kRange, what).About(name, value);
   };
   const auto degrees = [](double angle) { return Text(RadiansToDegrees(angle)); };
-  if (count < 1) {
-    refuse(std::to_string(count) + " directions; give 1 or more", "directions", count);
+  if (count < 1 || count > kMostDirections) {
+    refuse(std::to_string(count) + " directions; give 1 to " + std::to_string(kMostDirections),
+           "directions", count);
   }
   if (!(device.max_theta > 0 && device.max_theta < kPi / 2)) {
     refuse("theta up to " + degrees(device.max_theta) + " deg; it must be above 0 and below 90",
@@ -108,11 +111,10 @@ void Check(int count, const Goniometer& device) {
 
 std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device) {
   Check(count, device);
-  // A device that reaches one point in so many reaches hardly any more.
-  const int64_t most = 2000 + 500 * static_cast<int64_t>(count);
+  constexpr int64_t kMostPoints = 2000000;  // whose number makes up what the device reaches
   std::vector<SphericalAngles> directions;
   std::set<std::array<int64_t, 3>> known;
-  for (int64_t number = 1; number <= most && std::ssize(directions) < count; ++number) {
+  for (int64_t number = 1; number <= kMostPoints && std::ssize(directions) < count; ++number) {
     const DirectionPair pair = Point(number, device);
     if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) continue;
     const SphericalAngles at = Set(pair, device);

@@ -13,15 +13,18 @@ struct Goniometer {
   double max_theta = DegreesToRadians(80);  // of the light and of the detector, from the normal
   bool in_plane = false;                    // the detector stays in the plane of incidence
   std::vector<double> incidences = {};      // theta_i that the light has; empty: any
-  double step = 0;                          // all angles are multiples of it; 0: any angle
-  double blind = 0;                         // least angle between the light and the detector
+  // All angles but given incidences, and 0 and pi in the plane, are multiples of it; 0: any angle.
+  double step = 0;
+  double blind = 0;  // least angle between the light and the detector
 };
+
+inline constexpr int kMostDirections = 100000;
 
 // Directions to measure of an isotropic material that is not known, phi_i = 0 and phi_o from 0 to
 // pi: points of low discrepancy (Halton 1960) in theta_h, theta_d and phi_d or, at given
 // incidences, in theta_h, phi_h and theta_i, of which those are left out that the device cannot
 // reach or has measured. Each prefix is spread as evenly, so that one may stop at any time. Throws
-// Error unless count is at least 1 and the device reaches so many.
+// Error unless count is from 1 to kMostDirections and the device reaches so many.
 std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device);
 
 }  // namespace trilobe

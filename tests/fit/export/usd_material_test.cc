@@ -21,7 +21,7 @@ TEST(UsdMaterial, HasWhatThePreviewSurfaceTakes) {
   EXPECT_THAT(text, testing::StartsWith("#usda 1.0\n"));
   EXPECT_THAT(text, HasSubstr("doc = \"\"\"of \\\"x\\\"\nfar off\nmuch\"\"\""));
   EXPECT_THAT(text, HasSubstr("def Material \"_2_coppers\""));
-  EXPECT_THAT(text, HasSubstr("material:binding = </World/_2_coppers>"));
+  EXPECT_THAT(text, HasSubstr("material:binding = </World/Looks/_2_coppers>"));
   EXPECT_THAT(text, HasSubstr("inputs:diffuseColor = (0.95, 0.64, 0.54)"));
   EXPECT_THAT(text, HasSubstr("inputs:metallic = 1\n"));
   EXPECT_THAT(text, HasSubstr("inputs:roughness = 0.387\n"));

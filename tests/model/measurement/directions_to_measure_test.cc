@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <set>
 #include <string>
@@ -71,6 +72,31 @@ TEST(DirectionsToMeasure, KeepToWhatTheDeviceCan) {
   }
 }
 
+// A step is the detector's where the light has angles of its own, and need not divide 180 degrees.
+TEST(DirectionsToMeasure, GivenIncidencesAreKept) {
+  Goniometer device;
+  device.incidences = {DegreesToRadians(12.5), DegreesToRadians(45)};
+  device.step = DegreesToRadians(7);
+  for (const SphericalAngles& at : DirectionsToMeasure(40, device)) {
+    const double theta_i = Degrees(at.theta_i);
+    EXPECT_TRUE(std::abs(theta_i - 12.5) < 1e-9 || std::abs(theta_i - 45) < 1e-9) << theta_i;
+    EXPECT_NEAR(std::remainder(Degrees(at.phi_o), 7), 0, 1e-9);
+  }
+}
+
+// How many the device reaches does not depend on how many are asked for.
+TEST(DirectionsToMeasure, AsManyAsAreReachedCanBeHad) {
+  Goniometer device;
+  device.step = DegreesToRadians(20);
+  device.blind = DegreesToRadians(120);
+  const auto thrown = ErrorOf([&] { DirectionsToMeasure(1000, device); });
+  ASSERT_TRUE(thrown);
+  int reached = 0;
+  ASSERT_EQ(std::sscanf(thrown->what(), "the device reaches %d of", &reached), 1);
+  EXPECT_GT(reached, 0);
+  EXPECT_EQ(std::ssize(DirectionsToMeasure(reached, device)), reached);
+}
+
 // Nobody measures the same twice, nor what reciprocity tells.
 TEST(DirectionsToMeasure, SayEachThingOnce) {
   Goniometer device;
@@ -91,7 +117,9 @@ TEST(DirectionsToMeasure, WhatCannotBeIsOneLine) {
     const auto thrown = ErrorOf([&] { DirectionsToMeasure(count, device); });
     return std::string(thrown ? thrown->what() : "");
   };
-  EXPECT_THAT(error(0, {}), testing::HasSubstr("give 1 or more"));
+  for (const int count : {0, -5, kMostDirections + 1}) {
+    EXPECT_THAT(error(count, {}), testing::HasSubstr("give 1 to 100000"));
+  }
   for (const double theta : {0.0, kPi / 2, kNan}) {
     EXPECT_THAT(error(1, {.max_theta = theta}), testing::HasSubstr("above 0 and below 90"));
   }
