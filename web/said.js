@@ -82,6 +82,7 @@ export function showFacts() {
   if (page.lightFile) row('light', page.lightFile.name);
   if (asItCame() && contents.verdict) row('measured', `${short(100 * contents.measured_share)} % of what a renderer reads`);
   row('form', `${base.anisotropic ? 'anisotropic' : 'isotropic'}, ${formText()}`);
+  if (!modelFile.dropped && !edited()) contents.ggx.forEach((text, m) => row(`lobe ${m + 1} as GGX`, text));
   if (!modelFile.dropped) row('spectra', contents.wavelengths && `${contents.wavelengths}; shown are their colours`);
   row('solver', fit.solver ? `${fit.solver}${fit.iterations ? `, ${fit.iterations} iterations` : ''}` : '');
   row('stopped', fit.stop_reason);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/fit_page.h"
+#include "fit/reports/ggx_lobe.h"
 #include "fit/reports/verdict_report.h"
 #include "io/pictures/page.h"
 #include "io/pictures/plots.h"
@@ -53,6 +54,10 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
   contents.parameters = model.layout ? model.layout->num_parameters(spec) : spec.num_parameters();
   contents.wavelengths = model.spectral ? WavelengthsText(*model.spectral) : compared.wavelengths;
   contents.trace.assign(trace.begin(), trace.end());
+  for (int m = 0; m < spec.lobes; ++m) {
+    const std::optional<GgxLobe> ggx = NearestGgx(model.model, m);
+    contents.ggx.push_back(ggx ? GgxText(*ggx) : "");
+  }
   const Material fitted = MaterialOf(model.model);
   PictureData pictured;
   std::optional<BrdfTable> sampled;

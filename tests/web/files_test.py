@@ -63,6 +63,7 @@ def test_five_files_of_five_kinds(open_page: Open, scattered: Path, fits: Path, 
     facts = rows(page, "#facts")
     assert facts["fitted to"] == ["synth:plastic"] and facts["shown beside"][0].startswith("broad.csv, ")
     assert "PSNR" not in facts
+    assert facts["lobe 1 as GGX"][0].startswith("alpha ")
     # Another model beside the same samples.
     drop(page, fits / "shot_silk/model.json")
     finished(page)
@@ -70,6 +71,7 @@ def test_five_files_of_five_kinds(open_page: Open, scattered: Path, fits: Path, 
     assert 0.1 < exposed(page) < 0.6
     facts = rows(page, "#facts")
     assert facts["model"] == ["model.json"] and facts["fitted to"] == ["synth:shot_silk"]
+    assert "lobe 1 as GGX" not in facts  # which is the program's, of the fit
     with page.expect_download() as download:
         page.click("#save")
     assert download.value.suggested_filename == "model.json"

@@ -291,6 +291,7 @@ std::string FormatPage(const ModelFile& model, const PageContents& contents) {
                {"measured_share", contents.measured_share},
                {"reach", contents.reach},
                {"notes", Printables(contents.notes)},
+               {"ggx", contents.ggx},
                {"trace", ToJson(contents.trace)}};
   if (contents.measured) json["measured"] = ToJson(*contents.measured);
   if (contents.probe != nullptr) json["probe"] = ToJson(*contents.probe);

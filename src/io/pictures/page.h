@@ -65,6 +65,7 @@ struct PageContents {
   // The largest value of the model between samples over the largest sample; 0 if unknown.
   double reach = 0;
   std::vector<std::string> notes;  // on the measurement, and advice
+  std::vector<std::string> ggx;    // what is nearest to each lobe, in words; "" for nothing
   std::vector<IterationRecord> trace;
   std::string wavelengths;             // of a spectral fit, in words
   const Environment* probe = nullptr;  // the light; null: the studio, which the page computes
