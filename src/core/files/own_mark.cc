@@ -74,8 +74,8 @@ bool IsOwnJson(std::string_view bytes) {
 bool IsUnfilledPlan(std::string_view bytes) {
   constexpr std::string_view kColumns = "theta_i,phi_i,theta_o,phi_o\n";
   const size_t first = bytes.find('\n');
-  if (!bytes.starts_with("# Directions to measure ") || first == std::string_view::npos)
-    return false;
+  const bool begins = bytes.starts_with("# Directions to measure ");
+  if (!begins || first == std::string_view::npos) return false;
   const std::string_view table = bytes.substr(first + 1);
   if (!table.starts_with(kColumns)) return false;
   const auto lines = std::ranges::count(table, '\n'), commas = std::ranges::count(table, ',');
