@@ -1,0 +1,68 @@
+// `trilobe measure` as a person sees it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+#include "tests/app/run_program.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(Measure, PrintsOrWritesDirections) {
+  const TemporaryFolder folder;
+  const ProgramResult printed = RunProgram({"measure", "--directions=7"});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out, StartsWith("# Directions to measure [degrees], by trilobe "));
+  EXPECT_EQ(std::ranges::count(printed.out, '\n'), 2 + 7);
+  const std::string plan = folder / "plan.csv";
+  EXPECT_THAT(RunProgram({"measure", "--directions=7", "--out=" + plan}).out,
+              HasSubstr("7 pairs of directions"));
+  EXPECT_EQ(Contents(plan), printed.out);
+  // A model has values there, which are a measurement.
+  const std::string values = folder / "values.csv";
+  const ProgramResult at =
+      RunProgram({"convert", "material:satin_purple", "--at=" + plan, "--out=" + values});
+  EXPECT_EQ(at.status, 0) << at.err;
+  EXPECT_THAT(RunProgram({"info", values}).out, HasSubstr("samples                   7"));
+}
+
+// What somebody has measured is not lost.
+TEST(Measure, OverwritesNoPlanWithValues) {
+  const TemporaryFolder folder;
+  const std::string plan = folder / "plan.csv";
+  for (const char* const count : {"--directions=3", "--directions=5"}) {
+    EXPECT_EQ(RunProgram({"measure", count, "--out=" + plan}).status, 0);
+  }
+  std::ofstream(plan) << "# Directions to measure [degrees], by trilobe 0.2.0\n"
+                         "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,10,180,1,1,1\n";
+  const std::string filled = Contents(plan);
+  const ProgramResult again = RunProgram({"measure", "--out=" + plan});
+  EXPECT_EQ(again.status, 1);
+  EXPECT_THAT(again.err, HasSubstr("--force"));
+  EXPECT_EQ(Contents(plan), filled);
+}
+
+TEST(Measure, WhatCannotBeIsOneLine) {
+  const TemporaryFolder folder;
+  const auto error = [](const std::string& flag) {
+    const ProgramResult result = RunProgram({"measure", flag});
+    EXPECT_EQ(result.status, 1) << flag;
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(error("--directions=0"), HasSubstr("give 1 to 100000"));
+  EXPECT_THAT(error("--incidences=10,x"), HasSubstr("--incidences=10,x: give angles in degrees"));
+  EXPECT_THAT(error("--incidences=85"), HasSubstr("from 0 to theta_max, 80"));
+  EXPECT_THAT(error("--theta_max=nan"), HasSubstr("theta"));
+  EXPECT_THAT(error("--out=" + (folder / "x.json")), HasSubstr("end the name in .csv"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
