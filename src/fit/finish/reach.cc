@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/radical_inverse.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/model/objective/reconstruct.h"
 
@@ -10,18 +11,6 @@ namespace trilobe {
 namespace {
 
 constexpr size_t kDirections = 50000;
-
-// The digits of n in a base, mirrored at the point: n = 1, 2, ... are Halton's sequence in a
-// dimension whose base is a prime of its own (Halton 1960).
-double RadicalInverse(int base, size_t n) {
-  double value = 0, digit = 1;
-  const double step = 1.0 / base;
-  for (; n > 0; n /= base) {
-    digit *= step;
-    value += digit * static_cast<double>(n % base);
-  }
-  return value;
-}
 
 // The largest channel of the model at each pair.
 std::vector<double> LargestChannels(const std::vector<SphericalAngles>& pairs,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/radical_inverse.h"
 #include "model/appearance/color.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
@@ -68,13 +69,6 @@ Environment MakeStudio() {
     }
   }
   return studio;
-}
-
-// Van der Corput's sequence in base 2.
-double RadicalInverse(unsigned n) {
-  double inverse = 0, digit = 0.5;
-  for (; n != 0; n >>= 1, digit /= 2) inverse += (n & 1) != 0 ? digit : 0;
-  return inverse;
 }
 
 // Position in a running sum (with its total last) at which it first exceeds a share of the total,
@@ -142,7 +136,7 @@ std::vector<Light> DrawLights(const Environment& environment, int count) {
   for (int k = 0; k < count; ++k) {
     const double row = Find(row_sums.data(), height, (k + 0.5) / count);
     const int r = std::min(static_cast<int>(row), height - 1);
-    const double column = Find(&sums[r * width], width, RadicalInverse(static_cast<unsigned>(k)));
+    const double column = Find(&sums[r * width], width, RadicalInverse(2, static_cast<size_t>(k)));
     const int pixel = r * width + std::min(static_cast<int>(column), width - 1);
     Light light{DirectionAt(environment, row, column), environment.radiance[pixel]};
     const double luminance = Luminance(light.irradiance);

@@ -7,24 +7,12 @@
 #include <set>
 #include <string>
 
+#include "core/base/radical_inverse.h"
 #include "core/base/text.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
-
-// The digits of a number, mirrored at the point, in [0, 1).
-double RadicalInverse(int base, int64_t number) {
-  double inverse = 0, digit = 1.0 / base;
-  for (; number > 0; number /= base, digit /= base) {
-    inverse += digit * static_cast<double>(number % base);
-  }
-  return inverse;
-}
-
-Direction At(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
 
 Direction Mirrored(const Direction& wi, const Direction& h) {
   const double twice = 2 * Dot(wi, h);
@@ -32,7 +20,7 @@ Direction Mirrored(const Direction& wi, const Direction& h) {
 }
 
 // Point `number` of the sequence, whether or not the device reaches it.
-DirectionPair Point(int64_t number, const Goniometer& device) {
+DirectionPair Point(size_t number, const Goniometer& device) {
   const double theta_h = kPi / 2 * RadicalInverse(2, number);
   const double u = RadicalInverse(3, number), v = RadicalInverse(5, number);
   // In the plane of incidence the half vector lies on one side of the normal or the other.
@@ -41,8 +29,8 @@ DirectionPair Point(int64_t number, const Goniometer& device) {
     return ToDirections(HalfDiffAngles{theta_h, device.max_theta * u, phi});
   }
   const auto count = static_cast<double>(device.incidences.size());
-  const Direction wi = At(device.incidences[static_cast<size_t>(count * u)], 0);
-  return {wi, Mirrored(wi, At(theta_h, phi))};
+  const Direction wi = ToDirection({device.incidences[static_cast<size_t>(count * u)], 0});
+  return {wi, Mirrored(wi, ToDirection({theta_h, phi}))};
 }
 
 double Stepped(double angle, double step) {
@@ -111,10 +99,10 @@ void Check(int count, const Goniometer& device) {
 
 std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device) {
   Check(count, device);
-  constexpr int64_t kMostPoints = 2000000;  // whose number makes up what the device reaches
+  constexpr size_t kMostPoints = 2000000;  // whose number makes up what the device reaches
   std::vector<SphericalAngles> directions;
   std::set<std::array<int64_t, 3>> known;
-  for (int64_t number = 1; number <= kMostPoints && std::ssize(directions) < count; ++number) {
+  for (size_t number = 1; number <= kMostPoints && std::ssize(directions) < count; ++number) {
     const DirectionPair pair = Point(number, device);
     if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) continue;
     const SphericalAngles at = Set(pair, device);
