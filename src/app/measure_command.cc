@@ -4,7 +4,6 @@
 #include <optional>
 #include <ostream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "app/command.h"
@@ -39,15 +38,14 @@ Goniometer DeviceFromFlags() {
                     .in_plane = FLAGS_in_plane,
                     .step = DegreesToRadians(FLAGS_step),
                     .blind = DegreesToRadians(FLAGS_blind)};
-  for (const std::string_view cell : SplitCells(FLAGS_incidences)) {
-    if (FLAGS_incidences.empty()) break;
-    const std::optional<double> degrees = ToNumber(cell);
-    if (!degrees) {
-      throw Error(ErrorKind::kFormat,
-                  "--incidences=" + FLAGS_incidences + ": give angles in degrees, as 10,30,50,70")
-          .About("incidences", FLAGS_incidences);
-    }
-    device.incidences.push_back(DegreesToRadians(*degrees));
+  const std::optional<std::vector<double>> incidences = ToNumbers(FLAGS_incidences);
+  if (!incidences) {
+    throw Error(ErrorKind::kFormat,
+                "--incidences=" + FLAGS_incidences + ": give angles in degrees, as 10,30,50,70")
+        .About("incidences", FLAGS_incidences);
+  }
+  for (const double degrees : *incidences) {
+    device.incidences.push_back(DegreesToRadians(degrees));
   }
   return device;
 }

@@ -105,13 +105,7 @@ void SetNodes(std::string_view text, FitOptions* options) {
 void SetStretch(std::string_view text, FitOptions* options) {
   options->form.stretches = {};
   if (text.empty()) return;
-  std::vector<double> exponents;
-  for (const std::string_view cell : SplitCells(text)) {
-    const std::optional<double> exponent = ToNumber(cell);
-    if (!exponent) exponents.clear();
-    if (!exponent) break;
-    exponents.push_back(*exponent);
-  }
+  const std::vector<double> exponents = ToNumbers(text).value_or(std::vector<double>());
   if (exponents.empty() || exponents.size() % 2 != 0) {
     FailOptionText("stretch", text, "ALONG,ACROSS, as -0.2,0.3, once or for each lobe");
   }

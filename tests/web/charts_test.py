@@ -27,6 +27,16 @@ def saved(page: Any, button: str) -> str:
     return Path(download.value.path()).read_text()
 
 
+def reopen_by_link(page: Any) -> None:
+    """Copies the link, and opens it anew."""
+    page.click("#link")
+    wait_for(page, "location.hash.length > 1 && document.querySelector('#message').textContent !== ''")
+    address = page.url
+    page.goto("about:blank")
+    page.goto(address)
+    finished(page)
+
+
 def choose(page: Any, select: str, value: str) -> None:
     page.select_option(select, value)
     wait_for(page, DRAWN)
@@ -62,12 +72,7 @@ def test_a_scale_is_chosen_and_kept(open_page: Open) -> None:
     page.locator("input[aria-label='D over theta h: logarithmic']").uncheck()
     wait_for(page, f"{path} !== {json.dumps(before)}")
     assert page.locator("#chart-d text").first.text_content() == "0"
-    page.click("#link")
-    wait_for(page, "location.hash.length > 1 && document.querySelector('#message').textContent !== ''")
-    address = page.url
-    page.goto("about:blank")
-    page.goto(address)
-    finished(page)
+    reopen_by_link(page)
     wait_for(page, DRAWN)
     assert not page.locator("input[aria-label='D over theta h: logarithmic']").is_checked()
 
@@ -342,12 +347,7 @@ def test_a_table_is_changed_by_hand(open_page: Open, fits: Path) -> None:
     with page.expect_download() as download:
         page.click("#save")
     assert json.loads(Path(download.value.path()).read_text())["G"][1][30] == pytest.approx(2, abs=1e-6)
-    page.click("#link")
-    wait_for(page, "location.hash.length > 1 && document.querySelector('#message').textContent !== ''")
-    address = page.url
-    page.goto("about:blank")
-    page.goto(address)
-    finished(page)
+    reopen_by_link(page)
     assert page.evaluate("trilobe.model.tables.G[1][30]") == pytest.approx(2, abs=1e-6)
     page.click("#reset")
     assert page.evaluate("Array.from(trilobe.model.tables.G[1])") == pytest.approx(table)

@@ -85,6 +85,17 @@ std::vector<std::string_view> SplitCells(std::string_view line, char separator) 
   return cells;
 }
 
+std::optional<std::vector<double>> ToNumbers(std::string_view line) {
+  std::vector<double> numbers;
+  if (line.empty()) return numbers;
+  for (const std::string_view cell : SplitCells(line)) {
+    const std::optional<double> number = ToNumber(cell);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::vector<std::string_view> SplitWords(std::string_view line) {
   std::vector<std::string_view> words;
   for (size_t begin = line.find_first_not_of(kSpace); begin != std::string_view::npos;) {

@@ -54,6 +54,8 @@ std::vector<std::string_view> SplitWords(std::string_view line);
 // A number that a cell holds, and nothing else; "nan" and "inf" are numbers.
 std::optional<double> ToNumber(std::string_view cell);
 std::optional<int> ToInteger(std::string_view cell);
+// The numbers of cells between commas; none of an empty text, and nothing if a cell is no number.
+std::optional<std::vector<double>> ToNumbers(std::string_view line);
 
 // Whole numbers with an x between each two, as "30x30x60"; none where the text is anything else.
 std::vector<int> IntegersByX(std::string_view text);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <optional>
 #include <ostream>
@@ -35,6 +34,7 @@
 #include "trilobe/fit/fit.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/albedo.h"
 
 namespace trilobe {
 namespace {
@@ -167,8 +167,7 @@ const StandardFormat* StandardFormatOf(const std::string& path) {
 
 // The two, side by side.
 void DrawStandard(const FactorModel& model, const std::string& source, double max_angle,
-                  const std::function<Rgb(const DirectionPair&)>& brdf, const std::string& path,
-                  AppearanceOptions options) {
+                  const BrdfFunction& brdf, const std::string& path, AppearanceOptions options) {
   options.size = 160;  // half the pixels of each sphere
   Measurement shown = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
   LimitAngles(DegreesToRadians(max_angle), &shown);

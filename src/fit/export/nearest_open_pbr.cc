@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -376,8 +375,7 @@ std::vector<OpenPbr> Starts(const Prepared& model, StandardShading shading) {
 
 }  // namespace
 
-std::function<Rgb(const DirectionPair&)> StandardBrdf(StandardShading shading,
-                                                      const OpenPbr& material) {
+BrdfFunction StandardBrdf(StandardShading shading, const OpenPbr& material) {
   if (shading == StandardShading::kOpenPbr) return OpenPbrBrdf(material);
   return GltfBrdf(material);
 }
@@ -404,7 +402,7 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
     return sum;
   };
   const auto rendered = [&](const OpenPbr& material) {
-    const auto brdf = StandardBrdf(shading, material);
+    const BrdfFunction brdf = StandardBrdf(shading, material);
     const SphericalBrdf materials[] = {
         [&](const SphericalAngles& at) { return value(ToDirections(at)); },
         [&](const SphericalAngles& at) { return brdf(ToDirections(at)); }};

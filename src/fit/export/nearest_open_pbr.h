@@ -1,13 +1,10 @@
 #ifndef TRILOBE_FIT_EXPORT_NEAREST_OPEN_PBR_H_
 #define TRILOBE_FIT_EXPORT_NEAREST_OPEN_PBR_H_
 
-#include <functional>
-
 #include "fit/export/open_pbr.h"
-#include "trilobe/core/base/channels.h"
-#include "trilobe/core/base/directions.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/albedo.h"
 
 namespace trilobe {
 
@@ -17,8 +14,7 @@ namespace trilobe {
 enum class StandardShading { kOpenPbr, kGltf, kPreviewSurface };
 
 // BRDF [1/sr] of a standard material as it is shaded.
-std::function<Rgb(const DirectionPair&)> StandardBrdf(StandardShading shading,
-                                                      const OpenPbr& material);
+BrdfFunction StandardBrdf(StandardShading shading, const OpenPbr& material);
 
 // The standard material that looks most like a model.
 struct NearestOpenPbr {

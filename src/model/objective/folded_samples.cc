@@ -280,12 +280,8 @@ FoldedSamples FoldWithPart(int count, const SampleMaker& make_one, int num_threa
   std::vector<WeightedSample> few;
   SampleMaker make = make_one;
   if (count <= kFew) {
-    few.resize(count);
-    constexpr int kChunk = 1024;
-    ParallelFor((count + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
-      const int end = std::min((chunk + 1) * kChunk, count);
-      for (int j = chunk * kChunk; j < end; ++j) few[j] = make_one(j);
-    });
+    ForSamples(count, make_one, num_threads, std::identity(),
+               [&](int /*j*/, const WeightedSample& sample) { few.push_back(sample); });
     make = [&few](int j) { return few[j]; };
   }
   FoldedSamples folded;
