@@ -1,10 +1,11 @@
 #include "trilobe/core/base/check.h"
 
 #include <sstream>
+#include <string>
 
 namespace trilobe {
 
-void FailNumber(const std::string& name, double value, const std::string& must_be) {
+void FailNumber(std::string_view name, double value, std::string_view must_be) {
   constexpr int kDigits = 10;  // of any index
   std::ostringstream message;
   message.precision(kDigits);
@@ -21,9 +22,9 @@ void FailIndex(int64_t index, int64_t size, const char* name) {
   FailNumber(name, static_cast<double>(index), "from 0 to " + std::to_string(size - 1));
 }
 
-void CheckSize(const std::string& name, size_t size, size_t expected) {
+void CheckSize(std::string_view name, size_t size, size_t expected) {
   if (size == expected) return;
-  throw Error(ErrorKind::kMismatch, name + " has " + std::to_string(size) +
+  throw Error(ErrorKind::kMismatch, std::string(name) + " has " + std::to_string(size) +
                                         " values; it must have " + std::to_string(expected))
       .About(name, size);
 }

@@ -18,8 +18,9 @@ Between OnCircle(double radians, int count) {
   const double turns = radians / (2 * kPi);
   const double place = (turns - std::floor(turns)) * count;
   const double floor = std::floor(place);
-  const int lower = static_cast<int>(floor) % count;
-  return {lower, (lower + 1) % count, place - floor};
+  const int below = static_cast<int>(floor);
+  const int lower = below < count ? below : 0;  // where the angle is next to a whole turn
+  return {lower, lower + 1 < count ? lower + 1 : 0, place - floor};
 }
 
 Stencil PointStencil(int index) { return {1, {index}, {1.0}}; }

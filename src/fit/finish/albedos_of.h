@@ -6,11 +6,15 @@
 
 #include "trilobe/core/base/channels.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/prepared_model.h"
 
 namespace trilobe {
 
-// The directional albedos of an isotropic model at theta_i [rad] (DirectionalAlbedos).
-// [theta_i.size()]
+// The directional albedo of an isotropic model at theta_i [rad], by the rule of DirectionalAlbedo:
+// it reflects as much to one side of the plane of incidence as to the other.
+Rgb AlbedoOf(const PreparedModel<double>& prepared, double theta_i);
+
+// The same for many angles. [theta_i.size()]
 std::vector<Rgb> AlbedosOf(const FactorModel& model, std::span<const double> theta_i,
                            int num_threads);
 

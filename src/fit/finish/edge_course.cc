@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/base/robust_line.h"
-#include "fit/finish/albedos_of.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/channels.h"
 #include "trilobe/model/axis.h"
@@ -108,16 +107,9 @@ void ContinueG(double from, const std::vector<double>& phi_of_bins, const Axis& 
 constexpr double kStep = DegreesToRadians(0.5);
 constexpr int kFirstStep = 100, kLastStep = 179, kFirstOfCourse = 128;  // 50, 89.5 and 64 degrees
 
-std::vector<double> StepsFrom(int first) {
-  std::vector<double> theta;
-  for (int k = first; k <= kLastStep; ++k) theta.push_back(k * kStep);
-  return theta;
-}
-
-// The course of a model's albedo at each half degree from 64 degrees.
-std::vector<Rgb> CourseOf(double around, const FactorModel& model, int num_threads) {
+// The course of albedos, which are at AnglesOfCourse(), at each half degree from 64 degrees.
+std::vector<Rgb> CourseOf(double around, const std::vector<Rgb>& albedos) {
   constexpr double kBlack = 1e-300;
-  const std::vector<Rgb> albedos = AlbedosOf(model, StepsFrom(kFirstStep), num_threads);
   const int wide = static_cast<int>(2 * around);
   std::vector<Rgb> course;
   for (int k = kFirstOfCourse; k <= kLastStep; ++k) {
@@ -145,9 +137,9 @@ struct Factors {
 };
 
 // By how much the light of the lobes is short of the course.
-Factors FactorsTo(const std::vector<Rgb>& course, const FactorModel& model, int num_threads) {
+Factors FactorsTo(const std::vector<Rgb>& course, const std::vector<Rgb>& albedos,
+                  const FactorModel& model) {
   constexpr double kMost = 2;
-  const std::vector<Rgb> albedos = AlbedosOf(model, StepsFrom(kFirstOfCourse), num_threads);
   Factors factors;
   for (size_t k = 0; k < course.size(); ++k) {
     Rgb logs{};
@@ -200,12 +192,19 @@ void ContinueTogether(double from, FactorModel* model) {
   }
 }
 
-void FollowCourse(double around, const TableLayout& layout, int num_threads, FactorModel* model) {
+std::vector<double> AnglesOfCourse() {
+  std::vector<double> theta;
+  for (int k = kFirstStep; k <= kLastStep; ++k) theta.push_back(k * kStep);
+  return theta;
+}
+
+void FollowCourse(double around, const TableLayout& layout, const FactoredAlbedos& albedos,
+                  FactorModel* model) {
   constexpr int kPasses = 5;
   const ModelSpec& spec = model->spec();
-  const std::vector<Rgb> course = CourseOf(around, *model, num_threads);
+  const std::vector<Rgb> course = CourseOf(around, albedos(*model));
   for (int pass = 0; pass < kPasses; ++pass) {
-    const Factors factors = FactorsTo(course, *model, num_threads);
+    const Factors factors = FactorsTo(course, albedos(*model, kFirstOfCourse - kFirstStep), *model);
     for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
       Scale(factors.common, 0.5, spec.g_axis, model->table(Factor::kG, t));
     }

@@ -1,6 +1,9 @@
 #ifndef TRILOBE_FIT_FINISH_EDGE_COURSE_H_
 #define TRILOBE_FIT_FINISH_EDGE_COURSE_H_
 
+#include <vector>
+
+#include "fit/finish/factored_albedos.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 
@@ -18,12 +21,16 @@ namespace trilobe {
 // still make up for each other.
 void ContinueTogether(double from, FactorModel* model);
 
+// The angles at which FollowCourse reads albedos: each half degree from 50 to 89.5 degrees [rad].
+std::vector<double> AnglesOfCourse();
+
 // Scales G, by half of the logarithm as two of them make a highlight, and the colours of F towards
 // the horizon until the directional albedo follows its own smooth course: at each half degree from
 // 64 degrees, the quadratic fitted to its logarithms within `around` degrees, by weights that fall
-// off (Cleveland, Journal of the American Statistical Association 74, 1979). The same bits for any
-// number of threads.
-void FollowCourse(double around, const TableLayout& layout, int num_threads, FactorModel* model);
+// off (Cleveland, Journal of the American Statistical Association 74, 1979). `albedos`: of models
+// with this D, at AnglesOfCourse().
+void FollowCourse(double around, const TableLayout& layout, const FactoredAlbedos& albedos,
+                  FactorModel* model);
 
 }  // namespace trilobe
 

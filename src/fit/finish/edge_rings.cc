@@ -7,6 +7,7 @@
 
 #include "fit/finish/albedos_of.h"
 #include "fit/finish/edge_course.h"
+#include "fit/finish/factored_albedos.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/channels.h"
 #include "trilobe/model/axis.h"
@@ -27,18 +28,19 @@ double EndOfF(const Objective& data, const FactorModel& model) {
   return last;
 }
 
-}  // namespace
+// Angles at which rings are looked for, those of a course from 61 degrees on, the first of which
+// are only what is beside them.
+constexpr int kPerDegree = 2, kAround = 4 * kPerDegree, kFirstOfRings = (61 - 50) * kPerDegree;
 
-EdgeRing EdgeRingOf(const FactorModel& model, int num_threads) {
-  constexpr int kPerDegree = 2, kFirst = 65 * kPerDegree, kLast = 89 * kPerDegree + 1;
-  constexpr int kAround = 4 * kPerDegree;
+std::vector<double> AnglesOfRings() {
+  const std::vector<double> of_course = AnglesOfCourse();
+  return {of_course.begin() + kFirstOfRings, of_course.end()};
+}
+
+// The highest ring of albedos at these angles.
+EdgeRing HighestRing(const std::vector<Rgb>& albedos) {
+  const std::vector<double> theta_i = AnglesOfRings();
   EdgeRing ring;
-  if (model.spec().anisotropic()) return ring;
-  std::vector<double> theta_i;
-  for (int k = kFirst - kAround; k <= kLast; ++k) {
-    theta_i.push_back(DegreesToRadians(static_cast<double>(k) / kPerDegree));
-  }
-  const std::vector<Rgb> albedos = AlbedosOf(model, theta_i, num_threads);
   const int end = static_cast<int>(albedos.size());
   for (int k = kAround; k < end; ++k) {
     for (int step = 1; step <= kAround && k + step < end; ++step) {
@@ -57,6 +59,13 @@ EdgeRing EdgeRingOf(const FactorModel& model, int num_threads) {
   return ring;
 }
 
+}  // namespace
+
+EdgeRing EdgeRingOf(const FactorModel& model, int num_threads) {
+  if (model.spec().anisotropic()) return {};
+  return HighestRing(AlbedosOf(model, AnglesOfRings(), num_threads));
+}
+
 std::optional<FactorModel> WithoutEdgeRings(
     const Objective& data, const FactorModel& model, const TableLayout& layout,
     const LightLimit* limit, const std::function<bool(const FactorModel&)>& acceptable,
@@ -69,16 +78,17 @@ std::optional<FactorModel> WithoutEdgeRings(
   const double end = EndOfF(data, model);
   if (end >= f_axis.Theta(f_axis.size - 1)) return std::nullopt;
   double lowest = EdgeRingOf(model, num_threads).share;
+  const auto is_done = [&] { return lowest <= kSeenEdgeRing || stop(); };
+  if (is_done()) return std::nullopt;
+  const FactoredAlbedos albedos(model, AnglesOfCourse(), num_threads);
   std::optional<FactorModel> even;
   const auto consider = [&](FactorModel candidate) {
     if (limit != nullptr) limit->LowerWhereExceeded(layout, stop, &candidate);
-    const double share = EdgeRingOf(candidate, num_threads).share;
+    const double share = HighestRing(albedos(candidate, kFirstOfRings)).share;
     if (!(share < lowest) || !acceptable(candidate)) return;
     lowest = share;
     even = std::move(candidate);
   };
-  const auto is_done = [&] { return lowest <= kSeenEdgeRing || stop(); };
-  if (is_done()) return std::nullopt;
   for (const double width : kWidths) {
     FactorModel candidate = model;
     if (width != kAsItIs) {
@@ -88,7 +98,7 @@ std::optional<FactorModel> WithoutEdgeRings(
     }
     for (const double around : kArounds) {
       if (is_done()) return even;
-      FollowCourse(around, layout, num_threads, &candidate);
+      FollowCourse(around, layout, albedos, &candidate);
       consider(candidate);
     }
   }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "fit/finish/albedos_of.h"
 #include "model/measurement/albedo_rule.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/stencil.h"
@@ -40,12 +41,14 @@ class Turn {
 Rgb QuickAlbedo(const PreparedModel<double>& prepared, bool anisotropic, const PolarAngles& at) {
   const Turn turned(at.phi);
   Rgb albedo{};
-  VisitReflected(at.theta, kQuickAzimuths, [&](const DirectionPair& pair, double weight) {
-    if (!anisotropic && pair.wo[1] < 0) return;
-    const Rgb value = anisotropic ? prepared.Value(turned(pair.wi), turned(pair.wo))
-                                  : prepared.Value(pair.wi, pair.wo);
-    for (int c = 0; c < kChannels; ++c) albedo[c] += weight * value[c];
-  });
+  VisitReflected(
+      at.theta, kQuickAzimuths,
+      [&](const DirectionPair& pair, double weight) {
+        const Rgb value = anisotropic ? prepared.Value(turned(pair.wi), turned(pair.wo))
+                                      : prepared.Value(pair.wi, pair.wo);
+        for (int c = 0; c < kChannels; ++c) albedo[c] += weight * value[c];
+      },
+      anisotropic ? Side::kBoth : Side::kOne);
   for (double& x : albedo) x *= (anisotropic ? 1 : 2) * 2 * kPi / kQuickAzimuths;
   return albedo;
 }
@@ -167,6 +170,10 @@ std::vector<Rgb> AlbedosFrom(const std::vector<LightBound>& bounds, const Factor
   std::vector<Rgb> albedos(bounds.size());
   ParallelFor(static_cast<int>(bounds.size()), num_threads, [&](int k) {
     const double theta = bounds[k].at.theta, phi = bounds[k].at.phi;
+    if (!model.spec().anisotropic()) {
+      albedos[k] = AlbedoOf(prepared, theta);
+      return;
+    }
     const Turn turned(phi);
     albedos[k] = DirectionalAlbedo(
         [&](const DirectionPair& pair) {

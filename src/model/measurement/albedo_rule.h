@@ -47,13 +47,15 @@ inline HalfAngleNodes::HalfAngleNodes() {
 
 // The rule of DirectionalAlbedo for light from theta_i in the plane of x and z:
 //   integral of rho(wi, wo) cos theta_o d omega_o ~ 2 pi / azimuths sum weight rho(pair),
-// by two-point Gauss-Legendre rules in the MERL bins of theta_h. Calls visit(pair, weight).
+// by two-point Gauss-Legendre rules in the MERL bins of theta_h. Calls visit(pair, weight), for the
+// wo on one side of the plane alone if they are mirrored on the other.
+enum class Side { kBoth, kOne };
 template <typename Visitor>
-void VisitReflected(double theta_i, int azimuths, const Visitor& visit) {
+void VisitReflected(double theta_i, int azimuths, const Visitor& visit, Side side = Side::kBoth) {
   static const HalfAngleNodes all;
   const MerlGrid& grid = all.grid;
   const Direction wi{std::sin(theta_i), 0, std::cos(theta_i)};
-  for (int k = 0; k < azimuths; ++k) {
+  for (int k = 0; k < (side == Side::kOne ? azimuths / 2 : azimuths); ++k) {
     const double phi = (k + 0.5) / azimuths * 2 * kPi;
     const double cos_phi = std::cos(phi), sin_phi = std::sin(phi);
     // With psi = atan2(sin theta_i cos phi, cos theta_i), cos theta_o is proportional to

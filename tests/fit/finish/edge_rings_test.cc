@@ -130,11 +130,13 @@ TEST(ContinueTogether, KeepsWhatFactorsReflectTogether) {
 TEST(FollowCourse, HardlyChangesWhatIsEven) {
   const Solved& fitted = FittedModel();
   FactorModel followed = fitted.model;
-  FollowCourse(6, TableLayout::Full(followed.spec()), 2, &followed);
+  const FactoredAlbedos albedos(fitted.model, AnglesOfCourse(), 2);
+  FollowCourse(6, TableLayout::Full(followed.spec()), albedos, &followed);
   const double rise = fitted.objective.Value(followed) - fitted.objective.Value(fitted.model);
   EXPECT_LE(rise, 1e-3 * fitted.objective.MeasuredEnergy());
   FactorModel threaded = fitted.model;
-  FollowCourse(6, TableLayout::Full(followed.spec()), 1, &threaded);
+  FollowCourse(6, TableLayout::Full(followed.spec()),
+               FactoredAlbedos(fitted.model, AnglesOfCourse(), 1), &threaded);
   EXPECT_TRUE(std::ranges::equal(followed.parameters(), threaded.parameters()));
 }
 

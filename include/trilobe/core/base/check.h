@@ -5,17 +5,18 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "trilobe/core/base/error.h"
 
 // Checks of arguments by public functions. Each throws Error with the argument's name if it fails.
+// One that holds makes no string, as some are made for each value that a model is asked for.
 namespace trilobe {
 
-[[noreturn]] void FailNumber(const std::string& name, double value, const std::string& must_be);
+[[noreturn]] void FailNumber(std::string_view name, double value, std::string_view must_be);
 
 // CheckNumber("stride", 0, stride >= 1, "1 or more"): "stride is 0; it must be 1 or more".
-inline void CheckNumber(const std::string& name, double value, bool holds,
-                        const std::string& must_be) {
+inline void CheckNumber(std::string_view name, double value, bool holds, std::string_view must_be) {
   if (!holds) FailNumber(name, value, must_be);
 }
 
@@ -26,7 +27,7 @@ inline void CheckIndex(int64_t index, int64_t size, const char* name) {
   if (index < 0 || index >= size) FailIndex(index, size, name);
 }
 
-void CheckSize(const std::string& name, size_t size, size_t expected);
+void CheckSize(std::string_view name, size_t size, size_t expected);
 
 void CheckNumThreads(int num_threads);
 
