@@ -104,7 +104,7 @@ TEST_F(AnisotropicCommands, PageSaysWhatIsNotOnIt) {
 TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   const ProgramResult fit =
       RunProgram({"fit", kVelvet, "--model=isotropic", "--lobes=1", "--solver=awls",
-                  "--max_iterations=3", "--verbose", "--out=" + In("isotropic")});
+                  "--max_iterations=3", "--verbose", "--noplots", "--out=" + In("isotropic")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("azimuths     an isotropic model leaves out "));
   const json report = Parse(Contents(In("isotropic/report.json")));
@@ -141,8 +141,9 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
 }
 
 TEST_F(AnisotropicCommands, FitWritesItsCourseAndTheTablesThatItFitted) {
-  const ProgramResult fit = RunProgram({"fit", "synth:charmeuse@4x12", "--lobes=1", "--convergence",
-                                        "--max_iterations=3", "--out=" + In("convergence")});
+  const ProgramResult fit =
+      RunProgram({"fit", "synth:charmeuse@4x12", "--lobes=1", "--convergence", "--max_iterations=3",
+                  "--noplots", "--out=" + In("convergence")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(Contents(In("convergence/convergence.csv")),
               StartsWith("iteration,seconds,objective,"));
