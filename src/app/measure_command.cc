@@ -23,7 +23,7 @@
 
 DEFINE_int32(directions, 50, "pairs of directions to measure");
 DEFINE_int32(next, 0, "pairs of directions to measure next, besides those of SOURCE");
-DEFINE_string(by, "both",
+DEFINE_string(by, "plan",
               "how --next chooses: plan, which goes on with --directions; design, by what a fit "
               "leaves open; or both, by turns");
 DEFINE_double(
@@ -116,7 +116,7 @@ int GiveNext(const std::string& source, const Goniometer& device) {
                                                        .on_stage = Status::Stage});
   Status::End();
   (FLAGS_out.empty() ? std::cerr : std::cout) << Expectation(next) << "\n";
-  Give(next.directions, inputs, "the best first");
+  Give(next.directions, inputs, "to be measured in this order");
   return 0;
 }
 
@@ -167,8 +167,9 @@ Command MeasureCommand() {
           "--incidences, --step and --blind say what\nthe device can do.\n\nWith a SOURCE, "
           "scattered samples of what was measured so far, it fits these, prints how far off the "
           "fit is expected to\nbe, now and then, and lists --next=N directions that are not among "
-          "them, the best first: every other one is that which\ntells most of what is seen, given "
-          "the fit; those between go on with the plan.",
+          "them: those that come next\nin the plan. With --by=design each is the one that tells "
+          "most "
+          "of what is seen, given the fit and all before; with\n--by=both they take turns.",
       .flags = WithSourceFlags({"directions", "next", "by", "theta_max", "in_plane", "incidences",
                                 "step", "blind", "out", "probe"}),
       .run = RunMeasure};

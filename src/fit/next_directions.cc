@@ -35,7 +35,7 @@ void CheckMeasured(const Measurement& measurement) {
 // How Delta E falls with the number of directions in the median of materials
 // (experiments/directions).
 double ExpectedFall(int measured, int more) {
-  constexpr double kPower = 1.0 / 3;
+  constexpr double kPower = 0.25;
   return std::pow(static_cast<double>(measured) / (measured + more), kPower);
 }
 
@@ -73,6 +73,7 @@ NextDirections NextDirectionsToMeasure(const Measurement& measurement, int count
   }
   const FitResult fit = Fit(measurement, options);
   NextDirections next{.directions = {}, .measured = samples.size(), .now = fit.whole};
+  if (fit.interrupted) return next;
   if (next.now) {
     next.expected_delta_e = ExpectedFall(next.measured, count) * next.now->mean_delta_e;
   }

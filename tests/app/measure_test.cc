@@ -63,8 +63,9 @@ TEST(Measure, SaysWhatIsNext) {
   const std::string next = folder / "next.csv";
   const ProgramResult written = RunProgram({"measure", values, "--next=4", "--out=" + next});
   EXPECT_THAT(written.out, HasSubstr("with these, by about "));
-  EXPECT_THAT(written.out, HasSubstr("4 pairs of directions [degrees], the best first"));
+  EXPECT_THAT(written.out, HasSubstr("4 pairs of directions [degrees]"));
   EXPECT_EQ(Contents(next), printed.out);
+  EXPECT_NE(RunProgram({"measure", values, "--next=4", "--by=design"}).out, printed.out);
   const std::string measured = Contents(values);
   EXPECT_EQ(RunProgram({"measure", values, "--next=4", "--out=" + values}).status, 1);
   EXPECT_EQ(Contents(values), measured);
