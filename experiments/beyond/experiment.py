@@ -27,9 +27,10 @@ def _table(setting, source, name):
 
 
 def _samples(setting, source, pattern, count):
-    """A few samples of the table, as a Product."""
-    return Product(Unit(f"samples/{source.name}/{pattern}-{count}", HERE / "sample_directions",
-                        (str(setting.program()), source.path, pattern, str(count), f"{FOLDER}/{SAMPLES}"), SAMPLES,
+    """A few samples of the table, as a Product. Which they are may depend on what is read of those before."""
+    flags = fits.words({"corrupt": f"noise:{setting.manifest['noise']}"}) if pattern.startswith("next_") else []
+    arguments = (str(setting.program()), source.path, pattern, str(count), f"{FOLDER}/{SAMPLES}", *flags)
+    return Product(Unit(f"samples/{source.name}/{pattern}-{count}", HERE / "sample_directions", arguments, SAMPLES,
                         labels={"material": source.name, "given": f"{pattern}:{count}"}), SAMPLES)
 
 
@@ -37,7 +38,7 @@ def _given(setting, source, part):
     """Data that a set of the manifest gives of a source to each rule: [(name, seed of the noise, the file, flags of a
     fit, the table as a Product or None)]."""
     made = []
-    names = corruptions.of_kinds(part.get("hidden", {}))
+    names = corruptions.of_kinds(part.get("hidden", {})) if part.get("clean", True) else []
     names += ["mask"] if part.get("mask") and setting.manifest["mask"] else []
     for name in names:
         if name == "mask":

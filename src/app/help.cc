@@ -16,10 +16,10 @@ namespace {
 
 // Flags that come first in the help of each command that takes them.
 constexpr std::string_view kCommon[] = {
-    "solvers",   "runs",     "model",      "lobes",     "solver", "max_iterations", "max_seconds",
-    "columns",   "theta_i",  "theta_o",    "max_angle", "scale",  "noise",          "at",
-    "scene",     "out",      "plots",      "threads",   "json",   "verbose",        "directions",
-    "theta_max", "in_plane", "incidences", "step",      "blind"};
+    "solvers", "runs",    "model",     "lobes",     "solver",     "max_iterations", "max_seconds",
+    "columns", "theta_i", "theta_o",   "max_angle", "scale",      "noise",          "at",
+    "scene",   "out",     "plots",     "threads",   "json",       "verbose",        "directions",
+    "next",    "by",      "theta_max", "in_plane",  "incidences", "step",           "blind"};
 
 bool IsCommon(const std::string& flag) {
   return std::ranges::find(kCommon, flag) != std::end(kCommon);

@@ -8,16 +8,24 @@
 
 #include "app/command.h"
 #include "app/flags.h"
+#include "app/inputs.h"
 #include "app/program.h"
 #include "app/result_folder.h"
+#include "app/status.h"
 #include "core/base/text.h"
 #include "core/files/file.h"
 #include "core/files/text_lines.h"
+#include "fit/next_directions.h"
 #include "fit/reports/print.h"
 #include "model/measurement/directions_to_measure.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
 
 DEFINE_int32(directions, 50, "pairs of directions to measure");
+DEFINE_int32(next, 0, "pairs of directions to measure next, besides those of SOURCE");
+DEFINE_string(by, "plan",
+              "how --next chooses: plan, which goes on with --directions; design, by what a fit "
+              "leaves open; or both, by turns");
 DEFINE_double(
     theta_max, 80,
     "largest angle of light and detector from the normal that the device has, in degrees");
@@ -61,25 +69,84 @@ void Write(const std::vector<SphericalAngles>& directions, std::ostream& out) {
   }
 }
 
-int RunMeasure(std::span<const std::string> /*arguments*/) {
-  const std::vector<SphericalAngles> directions =
-      DirectionsToMeasure(FLAGS_directions, DeviceFromFlags());
+// Prints the directions or writes them to --out, of which it then says this.
+void Give(const std::vector<SphericalAngles>& directions, const Inputs& inputs,
+          const std::string& words) {
   if (FLAGS_out.empty()) {
     Write(directions, std::cout);
-    return 0;
+    return;
   }
-  if (EndingOf(FLAGS_out) != ".csv") {
+  inputs.CheckOutput(FLAGS_out);
+  WriteFile(FLAGS_out, [&](std::ostream& out) { Write(directions, out); });
+  PrintLine("wrote " + FLAGS_out + ": " + std::to_string(directions.size()) +
+            " pairs of directions [degrees], " + words +
+            "; measure r, g and b [1/sr] at each, and fit the file");
+}
+
+// What a fit expects now and after these; beside directions that are printed, on standard error.
+std::string Expectation(const NextDirections& next) {
+  const auto all = [](int count) { return std::to_string(count) + " directions"; };
+  if (!next.now) return "the error of a fit to " + all(next.measured) + " is not guessed";
+  constexpr double kSeen = 1;  // Delta E of patches side by side, at the least (verdict.h)
+  const double delta_e = next.now->mean_delta_e;
+  const std::string now = "a fit to " + all(next.measured) + " is off by about Delta E " +
+                          Text(delta_e, 2) + " (guess for all directions)";
+  if (delta_e <= kSeen) return now + "; what more would change is hardly seen";
+  const auto count = static_cast<int>(next.directions.size());
+  return now + "; with these, by about " + Text(*next.expected_delta_e, 2) +
+         (*next.expected_delta_e <= kSeen
+              ? ", and more would hardly be seen"
+              : "; measure these " + std::to_string(count) + ", and ask again");
+}
+
+int GiveNext(const std::string& source, const Goniometer& device) {
+  if (!IsDefault("directions")) {
+    throw Error(ErrorKind::kConflict,
+                "--directions is for a material that is not known, and --next for one that is "
+                "measured in part; leave one out")
+        .About("directions", FLAGS_directions);
+  }
+  const NextBy by = FindNextBy(FLAGS_by);
+  const Inputs inputs({source, FLAGS_probe});
+  if (!FLAGS_out.empty()) inputs.CheckOutput(FLAGS_out);  // before the work
+  const Measurement measured = MeasurementOfSource(source, SourceOptionsFromFlags());
+  const NextDirections next = NextDirectionsToMeasure(measured, FLAGS_next, by, device,
+                                                      {.appearance = AppearanceOptionsFromFlags(),
+                                                       .num_threads = ThreadsFromFlags(),
+                                                       .on_stage = Status::Stage});
+  Status::End();
+  (FLAGS_out.empty() ? std::cerr : std::cout) << Expectation(next) << "\n";
+  Give(next.directions, inputs, "to be measured in this order");
+  return 0;
+}
+
+int GivePlan(const Goniometer& device) {
+  for (const auto& [flag, value] : GivenFlags(WithSourceFlags({"next", "by", "probe"}))) {
+    throw Error(ErrorKind::kMissing,
+                "--" + flag + " goes with the SOURCE of what was measured; name its file")
+        .About(flag, value);
+  }
+  Give(DirectionsToMeasure(FLAGS_directions, device), {},
+       "of which any first ones are spread evenly");
+  return 0;
+}
+
+int RunMeasure(std::span<const std::string> arguments) {
+  if (!FLAGS_out.empty() && EndingOf(FLAGS_out) != ".csv") {
     throw Error(ErrorKind::kUnsupported, "--out=" + FLAGS_out +
                                              ": directions are CSV; end the "
                                              "name in .csv")
         .About("out", FLAGS_out);
   }
-  Inputs().CheckOutput(FLAGS_out);
-  WriteFile(FLAGS_out, [&](std::ostream& out) { Write(directions, out); });
-  PrintLine("wrote " + FLAGS_out + ": " + std::to_string(directions.size()) +
-            " pairs of directions [degrees], of which any first ones are spread evenly; measure r, "
-            "g and b [1/sr] at each, and fit the file");
-  return 0;
+  const Goniometer device = DeviceFromFlags();
+  if (arguments.empty()) return GivePlan(device);
+  if (IsDefault("next")) {
+    throw Error(ErrorKind::kMissing, arguments[0] +
+                                         " has what was measured; say how many directions come "
+                                         "next, as --next=10")
+        .About("next");
+  }
+  return GiveNext(arguments[0], device);
 }
 
 }  // namespace
@@ -87,18 +154,24 @@ int RunMeasure(std::span<const std::string> /*arguments*/) {
 Command MeasureCommand() {
   return {
       .name = "measure",
-      .summary = "say which directions to measure of an unknown material",
-      .arguments = "",
+      .summary = "say which directions to measure of a material, or which next",
+      .arguments = "[SOURCE --next=N]",
       .min_arguments = 0,
-      .max_arguments = 0,
+      .max_arguments = 1,
       .details =
           "Writes --directions=N pairs of directions for a goniometer, as CSV with theta_i, phi_i, "
           "theta_o and phi_o [degrees],\nto --out=FILE.csv or, without it, to standard output. "
           "They are for an isotropic material, and spread evenly over\nhalf and difference angles "
           "(docs/measure.md has how good the fits are); the first ones of a longer list are those "
           "of\na shorter one, so that one may stop at any time. --theta_max, --in_plane, "
-          "--incidences, --step and --blind say what\nthe device can do.",
-      .flags = {"directions", "theta_max", "in_plane", "incidences", "step", "blind", "out"},
+          "--incidences, --step and --blind say what\nthe device can do.\n\nWith a SOURCE, "
+          "scattered samples of what was measured so far, it fits these, prints how far off the "
+          "fit is expected to\nbe, now and then, and lists --next=N directions that are not among "
+          "them: those that come next\nin the plan. With --by=design each is the one that tells "
+          "most "
+          "of what is seen, given the fit and all before; with\n--by=both they take turns.",
+      .flags = WithSourceFlags({"directions", "next", "by", "theta_max", "in_plane", "incidences",
+                                "step", "blind", "out", "probe"}),
       .run = RunMeasure};
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "tests/app/run_program.h"
 
@@ -47,6 +48,49 @@ TEST(Measure, OverwritesNoPlanWithValues) {
   EXPECT_EQ(again.status, 1);
   EXPECT_THAT(again.err, HasSubstr("--force"));
   EXPECT_EQ(Contents(plan), filled);
+}
+
+TEST(Measure, SaysWhatIsNext) {
+  const TemporaryFolder folder;
+  const std::string plan = folder / "plan.csv", values = folder / "values.csv";
+  RunProgram({"measure", "--directions=40", "--out=" + plan});
+  RunProgram({"convert", "material:satin_purple", "--at=" + plan, "--out=" + values});
+  const ProgramResult printed = RunProgram({"measure", values, "--next=4"});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out, StartsWith("# Directions to measure [degrees], by trilobe "));
+  EXPECT_EQ(std::ranges::count(printed.out, '\n'), 2 + 4);
+  EXPECT_THAT(printed.err, HasSubstr("a fit to 40 directions is off by about Delta E "));
+  const std::string next = folder / "next.csv";
+  const ProgramResult written = RunProgram({"measure", values, "--next=4", "--out=" + next});
+  EXPECT_THAT(written.out, HasSubstr("with these, by about "));
+  EXPECT_THAT(written.out, HasSubstr("4 pairs of directions [degrees]"));
+  EXPECT_EQ(Contents(next), printed.out);
+  EXPECT_NE(RunProgram({"measure", values, "--next=4", "--by=design"}).out, printed.out);
+  const std::string measured = Contents(values);
+  EXPECT_EQ(RunProgram({"measure", values, "--next=4", "--out=" + values}).status, 1);
+  EXPECT_EQ(Contents(values), measured);
+}
+
+TEST(Measure, WhatCannotBeNextIsOneLine) {
+  const TemporaryFolder folder;
+  const std::string few = folder / "few.csv";
+  std::ofstream(few) << "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,10,180,1,1,1\n20,0,10,180,1,1,1\n";
+  const auto error = [](const std::vector<std::string>& arguments) {
+    std::vector<std::string> words = {"measure"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const ProgramResult result = RunProgram(words);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(error({few, "--next=5"}), HasSubstr("at least 10 samples, and there are 2"));
+  EXPECT_THAT(error({few}), HasSubstr("--next=10"));
+  EXPECT_THAT(error({"--next=5"}), HasSubstr("SOURCE"));
+  EXPECT_THAT(error({few, "--next=5", "--by=luck"}), HasSubstr("plan, design or both"));
+  EXPECT_THAT(error({few, "--next=5", "--directions=9"}), HasSubstr("leave one out"));
+  EXPECT_THAT(error({"synth:plastic@9x9x18", "--next=5"}), HasSubstr("measured everywhere"));
+  EXPECT_THAT(error({"synth:linen@3x8", "--next=5"}), HasSubstr("isotropic"));
+  EXPECT_THAT(error({folder / "none.csv", "--next=5"}), HasSubstr("none.csv"));
 }
 
 TEST(Measure, WhatCannotBeIsOneLine) {

@@ -66,6 +66,41 @@ std::array<int64_t, 3> KeyOf(const SphericalAngles& at) {
   return {micro(least), micro(most), least > 1e-6 ? micro(at.phi_o) : 0};
 }
 
+// Finds what was measured already, whatever digits a file has kept of its angles.
+class Measured {
+ public:
+  explicit Measured(std::span<const SphericalAngles> directions) {
+    for (const SphericalAngles& at : directions) {
+      const auto [least, most] = std::minmax(at.theta_i, at.theta_o);
+      const double phi = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
+      for (const int64_t low : CellsNear(least)) {
+        for (const int64_t high : CellsNear(most)) {
+          for (const int64_t around : CellsNear(phi)) {
+            cells_.insert({low, high, low > 0 ? around : 0});
+          }
+        }
+      }
+    }
+  }
+
+  bool Contains(const SphericalAngles& at) const {
+    const auto [least, most] = std::minmax(at.theta_i, at.theta_o);
+    const int64_t low = CellOf(least);
+    return cells_.contains({low, CellOf(most), low > 0 ? CellOf(at.phi_o) : 0});
+  }
+
+ private:
+  static constexpr double kCell = DegreesToRadians(0.1);
+  static int64_t CellOf(double angle) { return std::llround(angle / kCell); }
+  // The cells of what is about the same angle, by just less than half a cell.
+  static std::set<int64_t> CellsNear(double angle) {
+    constexpr double kSame = 0.49 * kCell;
+    return {CellOf(angle - kSame), CellOf(angle + kSame)};
+  }
+
+  std::set<std::array<int64_t, 3>> cells_;
+};
+
 void Check(int count, const Goniometer& device) {
   const auto refuse = [](const std::string& what, const std::string& name, double value) {
     throw Error(ErrorKind::kRange, what).About(name, value);
@@ -97,18 +132,25 @@ void Check(int count, const Goniometer& device) {
 
 }  // namespace
 
-std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device) {
-  Check(count, device);
+std::vector<SphericalAngles> DirectionsLeft(int most, const Goniometer& device,
+                                            std::span<const SphericalAngles> measured) {
+  Check(most, device);
   constexpr size_t kMostPoints = 2000000;  // whose number makes up what the device reaches
+  const Measured before(measured);
   std::vector<SphericalAngles> directions;
   std::set<std::array<int64_t, 3>> known;
-  for (size_t number = 1; number <= kMostPoints && std::ssize(directions) < count; ++number) {
+  for (size_t number = 1; number <= kMostPoints && std::ssize(directions) < most; ++number) {
     const DirectionPair pair = Point(number, device);
     if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) continue;
     const SphericalAngles at = Set(pair, device);
-    if (!IsReached(at, device) || !known.insert(KeyOf(at)).second) continue;
+    if (!IsReached(at, device) || before.Contains(at) || !known.insert(KeyOf(at)).second) continue;
     directions.push_back(at);
   }
+  return directions;
+}
+
+std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device) {
+  std::vector<SphericalAngles> directions = DirectionsLeft(count, device, {});
   if (std::ssize(directions) < count) {
     throw Error(ErrorKind::kRange,
                 "the device reaches " + std::to_string(directions.size()) + " of " +

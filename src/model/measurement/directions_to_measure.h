@@ -1,6 +1,7 @@
 #ifndef TRILOBE_MODEL_MEASUREMENT_DIRECTIONS_TO_MEASURE_H_
 #define TRILOBE_MODEL_MEASUREMENT_DIRECTIONS_TO_MEASURE_H_
 
+#include <span>
 #include <vector>
 
 #include "trilobe/core/base/angles.h"
@@ -26,6 +27,12 @@ inline constexpr int kMostDirections = 100000;
 // reach or has measured. Each prefix is spread as evenly, so that one may stop at any time. Throws
 // Error unless count is from 1 to kMostDirections and the device reaches so many.
 std::vector<SphericalAngles> DirectionsToMeasure(int count, const Goniometer& device);
+
+// The first `most` of them that the device reaches, or as many as there are, without those that say
+// the same of an isotropic material as one of `measured`, at any azimuth of the light, to a
+// twentieth of a degree. Throws Error as above, but for too few.
+std::vector<SphericalAngles> DirectionsLeft(int most, const Goniometer& device,
+                                            std::span<const SphericalAngles> measured);
 
 }  // namespace trilobe
 

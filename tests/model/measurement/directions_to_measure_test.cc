@@ -8,6 +8,8 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/error_of.h"
 
@@ -108,6 +110,34 @@ TEST(DirectionsToMeasure, SayEachThingOnce) {
     EXPECT_TRUE(known.insert(rounded(at.theta_i) + " " + rounded(at.theta_o) + " " + phi).second);
     EXPECT_TRUE(at.theta_i == at.theta_o ||
                 known.insert(rounded(at.theta_o) + " " + rounded(at.theta_i) + " " + phi).second);
+  }
+}
+
+// Whatever the azimuth of the light, the order of the two, and the digits that a file keeps.
+TEST(DirectionsToMeasure, WhatIsLeftGoesOnWithThePlan) {
+  const std::vector<SphericalAngles> plan = DirectionsToMeasure(30, {});
+  std::vector<SphericalAngles> measured(plan.begin(), plan.begin() + 20);
+  for (size_t k = 0; k < measured.size(); ++k) {
+    SphericalAngles& at = measured[k];
+    if (k % 2 == 0) std::swap(at.theta_i, at.theta_o);
+    for (double* const angle : {&at.theta_i, &at.theta_o, &at.phi_o}) {
+      *angle = DegreesToRadians(std::round(100 * Degrees(*angle)) / 100);
+    }
+    at.phi_i = 1;
+    at.phi_o = k % 3 == 0 ? 1 - at.phi_o : 1 + at.phi_o;
+  }
+  const std::vector<SphericalAngles> left = DirectionsLeft(10, {}, measured);
+  ASSERT_EQ(left.size(), 10U);
+  for (size_t k = 0; k < left.size(); ++k) {
+    EXPECT_EQ(left[k].theta_i, plan[20 + k].theta_i);
+    EXPECT_EQ(left[k].phi_o, plan[20 + k].phi_o);
+  }
+  // Along the normal no azimuth says anything.
+  const Goniometer up{.incidences = {0}, .step = DegreesToRadians(30)};
+  const double thirty = DegreesToRadians(30);
+  for (const SphericalAngles& at :
+       DirectionsLeft(2, up, std::vector<SphericalAngles>{{thirty, 2, 0, 5}})) {
+    EXPECT_NE(at.theta_o, thirty);
   }
 }
 
