@@ -1,9 +1,11 @@
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/command.h"
@@ -18,6 +20,7 @@
 #include "fit/next_directions.h"
 #include "fit/reports/print.h"
 #include "model/measurement/directions_to_measure.h"
+#include "model/measurement/short_path.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 
@@ -37,6 +40,10 @@ DEFINE_double(
     "all angles but given incidences are multiples of this, in degrees, to 45; 0 for any angle");
 DEFINE_double(blind, 0,
               "least angle between light and detector, which hides the light, in degrees");
+DEFINE_string(
+    path, "",
+    "list them along a short path, by what a degree of theta_i, theta_o and phi takes, as "
+    "1,1,2; first parts of it are no smaller plans then");
 
 namespace trilobe {
 namespace {
@@ -69,9 +76,29 @@ void Write(const std::vector<SphericalAngles>& directions, std::ostream& out) {
   }
 }
 
+std::optional<AxisCosts> PathFromFlags() {
+  if (FLAGS_path.empty()) return std::nullopt;
+  const std::optional<std::vector<double>> costs = ToNumbers(FLAGS_path);
+  AxisCosts path{.in_plane = FLAGS_in_plane};
+  if (!costs || costs->size() != path.of_radian.size()) {
+    throw Error(ErrorKind::kFormat, "--path=" + FLAGS_path +
+                                        ": give what a degree of theta_i, theta_o and phi takes, "
+                                        "as 1,1,2")
+        .About("path", FLAGS_path);
+  }
+  std::ranges::copy(*costs, path.of_radian.begin());
+  AlongShortPath({}, path);  // its error
+  return path;
+}
+
 // Prints the directions or writes them to --out, of which it then says this.
-void Give(const std::vector<SphericalAngles>& directions, const Inputs& inputs,
-          const std::string& words) {
+void Give(std::vector<SphericalAngles> directions, const Inputs& inputs, std::string words) {
+  if (const std::optional<AxisCosts> path = PathFromFlags()) {
+    const double before = PathCost(directions, *path);
+    directions = AlongShortPath(std::move(directions), *path);
+    const double share = before > 0 ? PathCost(directions, *path) / before : 1;
+    words = "along a path of " + Text(100 * share, 2) + " % of the way through the plan";
+  }
   if (FLAGS_out.empty()) {
     Write(directions, std::cout);
     return;
@@ -139,6 +166,7 @@ int RunMeasure(std::span<const std::string> arguments) {
         .About("out", FLAGS_out);
   }
   const Goniometer device = DeviceFromFlags();
+  PathFromFlags();  // its error, before the work
   if (arguments.empty()) return GivePlan(device);
   if (IsDefault("next")) {
     throw Error(ErrorKind::kMissing, arguments[0] +
@@ -164,14 +192,16 @@ Command MeasureCommand() {
           "They are for an isotropic material, and spread evenly over\nhalf and difference angles "
           "(docs/measure.md has how good the fits are); the first ones of a longer list are those "
           "of\na shorter one, so that one may stop at any time. --theta_max, --in_plane, "
-          "--incidences, --step and --blind say what\nthe device can do.\n\nWith a SOURCE, "
+          "--incidences, --step and --blind say what\nthe device can do, and --path=1,1,2 lists "
+          "them "
+          "in an order in which its axes move little.\n\nWith a SOURCE, "
           "scattered samples of what was measured so far, it fits these, prints how far off the "
           "fit is expected to\nbe, now and then, and lists --next=N directions that are not among "
           "them: those that come next\nin the plan. With --by=design each is the one that tells "
           "most "
           "of what is seen, given the fit and all before; with\n--by=both they take turns.",
       .flags = WithSourceFlags({"directions", "next", "by", "theta_max", "in_plane", "incidences",
-                                "step", "blind", "out", "probe"}),
+                                "step", "blind", "path", "out", "probe"}),
       .run = RunMeasure};
 }
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/app/run_program.h"
@@ -32,6 +34,25 @@ TEST(Measure, PrintsOrWritesDirections) {
       RunProgram({"convert", "material:satin_purple", "--at=" + plan, "--out=" + values});
   EXPECT_EQ(at.status, 0) << at.err;
   EXPECT_THAT(RunProgram({"info", values}).out, HasSubstr("samples                   7"));
+}
+
+TEST(Measure, GoesAShortWay) {
+  const auto lines_of = [](const std::string& path) {
+    const ProgramResult result = RunProgram({"measure", "--directions=20", path});
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::istringstream text(result.out);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+    std::ranges::sort(lines);
+    return std::pair(lines, result.out);
+  };
+  const auto [plan, in_plan] = lines_of("--path=");
+  const auto [path, along_path] = lines_of("--path=1,1,2");
+  EXPECT_EQ(plan, path);
+  EXPECT_NE(in_plan, along_path);
+  const TemporaryFolder folder;
+  EXPECT_THAT(RunProgram({"measure", "--path=1,1,1", "--out=" + (folder / "p.csv")}).out,
+              HasSubstr(" % of the way through the plan"));
 }
 
 // What somebody has measured is not lost.
@@ -105,6 +126,8 @@ TEST(Measure, WhatCannotBeIsOneLine) {
   EXPECT_THAT(error("--incidences=10,x"), HasSubstr("--incidences=10,x: give angles in degrees"));
   EXPECT_THAT(error("--incidences=85"), HasSubstr("from 0 to theta_max, 80"));
   EXPECT_THAT(error("--theta_max=nan"), HasSubstr("theta"));
+  EXPECT_THAT(error("--path=1,2"), HasSubstr("theta_i, theta_o and phi takes, as 1,1,2"));
+  EXPECT_THAT(error("--path=1,2,-1"), HasSubstr("0 or more"));
   EXPECT_THAT(error("--out=" + (folder / "x.json")), HasSubstr("end the name in .csv"));
 }
 

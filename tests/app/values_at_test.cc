@@ -65,6 +65,7 @@ TEST(ValuesAt, NeedOnlyDirections) {
   }
   // Other commands ask for values.
   EXPECT_THAT(RunProgram({"info", csv}).err, HasSubstr("no column of values"));
+  EXPECT_THAT(RunProgram({"info", csv}).err, HasSubstr("add what you measured at each"));
 }
 
 TEST(ValuesAt, ErrorsSayWhatItGoesWith) {

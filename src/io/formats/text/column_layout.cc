@@ -200,6 +200,11 @@ class ColumnLayouter {
     } else if (!may_lack) {
       const std::vector<std::string> unread = Unread();
       const std::string begin = ", as r, g, b, or brdf, or wavelengths as 550nm; ";
+      if (All(Role::kOther).empty()) {
+        FailWithout("of values", begin +
+                                     "these are directions alone; add what you measured at "
+                                     "each, in 1/sr");
+      }
       if (unread.empty()) {
         FailWithout("of values", begin + "--columns=" + ExampleColumns(layout_.columns.size()) +
                                      " names columns, - those to leave out");
