@@ -526,7 +526,7 @@ TEST(ConvertTest, OfScatteredSamplesATableIsThatOfAModel) {
   const ProgramResult made = RunProgram({"convert", satin, "--out=" + table});
   EXPECT_EQ(made.status, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("all values of the table are the model's"));
-  EXPECT_EQ(RunProgram({"fit", satin, "--out=" + (folder / "fit")}).status, 0);
+  EXPECT_EQ(RunProgram({"fit", satin, "--noplots", "--out=" + (folder / "fit")}).status, 0);
   const ProgramResult score = RunProgram({"score", folder / "fit/model.json", table, "--json"});
   EXPECT_LT(json::parse(score.out)["relative_objective"], 1e-20) << score.err;
 }
@@ -697,7 +697,7 @@ TEST(DataNotes, TellOfADetectorInItsOwnLight) {
 
   const auto notes_of = [](const json& from) { return from["data_notes"].dump(); };
   const std::string out = folder / "fit";
-  RunProgram({"fit", csv, "--max_iterations=1", "--out=" + out});
+  RunProgram({"fit", csv, "--max_iterations=1", "--noplots", "--out=" + out});
   EXPECT_THAT(notes_of(json::parse(Contents(out + "/report.json"))), HasSubstr("below 10 deg"));
   Write(folder / "scene.json", R"({"format": "trilobe-scene", "version": 1, "materials": [
       {"name": "mirror", "source": "mirror.csv", "budget": {"relative_rise": 0}}]})");

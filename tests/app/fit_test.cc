@@ -311,7 +311,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   const ProgramResult result =
       RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_parameters=150",
                   "--max_iterations=2", "--lobes=1", "--max_angle=40", "--noise=0.02", "--verbose",
-                  "--out=" + out});
+                  "--noplots", "--out=" + out});
   ASSERT_EQ(result.status, 0) << result.err;
   const ModelFile file = ReadModel(out + "/model.json");
   ASSERT_TRUE(file.layout.has_value());
@@ -411,7 +411,7 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
   const auto fit = [&](const char* name, const char* match) {
     return RunProgram({"fit", table, "--lobes=1", "--missing=0.9", "--solver=varpro",
                        "--tolerance=1e-2", "--nodiagnose", "--verbose", match, "--smoothness=0",
-                       "--out=" + folder / name});
+                       "--noplots", "--out=" + folder / name});
   };
   const ProgramResult matched = fit("with", "--match_reflectance"),
                       unmatched = fit("without", "--nomatch_reflectance");
@@ -440,7 +440,7 @@ TEST(Fit, AThinnedModelReflectsAsMuchToo) {
   const TemporaryFolder folder;
   const ProgramResult result =
       RunProgram({"fit", "synth:rubber@30x30x60", "--noise=0.3", "--max_angle=40", "--model=auto",
-                  "--max_parameters=150", "--lobes=1", "--nodiagnose", "--convergence",
+                  "--max_parameters=150", "--lobes=1", "--nodiagnose", "--convergence", "--noplots",
                   "--out=" + folder / "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json report = Json(folder / "out/report.json");

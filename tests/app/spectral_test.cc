@@ -72,7 +72,7 @@ TEST(Spectral, AFitOfSevenBandsIsAModelOfSeven) {
 
   // Without the flag the model is the same to the bit, but for when it was made.
   const std::string plain = folder / "plain";
-  ASSERT_EQ(RunProgram({"fit", csv, "--out=" + plain, "--lobes=2"}).status, 0);
+  ASSERT_EQ(RunProgram({"fit", csv, "--noplots", "--out=" + plain, "--lobes=2"}).status, 0);
   json a = json::parse(Contents(out + "/model.json")),
        b = json::parse(Contents(plain + "/model.json"));
   for (json* model : {&a, &b}) {
@@ -116,8 +116,9 @@ TEST(Spectral, AnRglFileOfSpectraIsFittedAsSuch) {
   std::ofstream(folder / "red_spec.bsdf", std::ios::binary)
       << ExportRgl(model, {.max_error = 0.1}).bytes;
   const std::string out = folder / "red";
-  const ProgramResult fit = RunProgram({"fit", folder / "red_spec.bsdf", "--spectral", "--lobes=2",
-                                        "--max_iterations=3", "--nodiagnose", "--out=" + out});
+  const ProgramResult fit =
+      RunProgram({"fit", folder / "red_spec.bsdf", "--spectral", "--lobes=2", "--max_iterations=3",
+                  "--nodiagnose", "--noplots", "--out=" + out});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("spectra      7 wavelengths from 400 to 700 nm"));
   const ModelFile fitted = ReadModel(out + "/spectral.json");
@@ -130,8 +131,8 @@ TEST(Spectral, OneWavelengthIsToldAsOne) {
   const TemporaryFolder folder;
   const std::string csv = folder / "laser.csv", out = folder / "laser";
   WriteSpectra({633}, csv);
-  const ProgramResult fit =
-      RunProgram({"fit", csv, "--spectral", "--out=" + out, "--lobes=1", "--max_iterations=3"});
+  const ProgramResult fit = RunProgram(
+      {"fit", csv, "--spectral", "--out=" + out, "--lobes=1", "--max_iterations=3", "--noplots"});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("one value for all channels, 633 nm"));
   EXPECT_THAT(fit.out, HasSubstr("spectra      one wavelength, 633 nm, by "));
