@@ -249,7 +249,8 @@ def _draw_sky(axes: Any, rings: list[int]) -> None:
     """Half of the hemisphere from above, with rings of theta_o and, at its edge, phi_o - phi_i."""
     around = np.linspace(0, np.pi, 181)
     for ring in rings[1:]:
-        axes.plot(ring * np.cos(around), ring * np.sin(around), color="black" if ring == 90 else "0.8", lw=0.8, zorder=0)
+        color = "black" if ring == 90 else "0.8"
+        axes.plot(ring * np.cos(around), ring * np.sin(around), color=color, lw=0.8, zorder=0)
     for degrees in (0, 45, 90, 135, 180):
         x, y = -np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
         axes.plot([0, 90 * x], [0, 90 * y], color="0.8", lw=0.8, zorder=0, clip_on=False)
