@@ -147,7 +147,7 @@ def next_directions(
     options = {"next": next, "by": by, "threads": threads, **_device(theta_max, in_plane, incidences, step, blind)}
     data = measurement_of(measured)
     found = run(lambda running, _: fits().next_directions(data._data, options, running), data.source,
-                progress=bool(progress))
+                progress=progress)
     if found is None:
         raise KeyboardInterrupt
     angles, *told = found

@@ -136,7 +136,7 @@ def fit(
     by_sample = weights_of(weights, data)
     outcome = run(
         lambda running, ask: fits().fit(data._data, options, {**solver_options}, running, by_sample, ask),
-        data.source, callback, stop, bool(progress),
+        data.source, callback, stop, progress,
     )
     if not outcome.begun:
         if stop is not None and stop.is_set():

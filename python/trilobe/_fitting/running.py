@@ -11,6 +11,7 @@ from typing import Any, Protocol
 from trilobe._fitting.extension import fits
 from trilobe._fitting.result import Record
 from trilobe._model.brdf import Brdf
+from trilobe._model.error import Error
 
 _POLL_SECONDS = 0.05
 
@@ -36,6 +37,10 @@ def run(
 
     `callback` is called in this thread, and the fit waits for it. The bar names `source`.
     """
+    try:
+        shows_bar = bool(progress)
+    except (TypeError, ValueError):  # an array of several numbers has no truth value
+        raise Error("progress must be True or False", kind="format", key="progress") from None
     running = fits().RunningFit()
     ended: dict[str, Any] = {}
     done = threading.Event()  # join() forgets the thread when Ctrl-C ends it
@@ -75,7 +80,7 @@ def run(
             answers.put(answered)
 
     thread = threading.Thread(target=work, name="trilobe.fit", daemon=True)
-    bar = _Bar(progress, source)
+    bar = _Bar(shows_bar, source)
     stopped = False
     thread.start()
     try:
