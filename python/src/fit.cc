@@ -7,12 +7,10 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -30,6 +28,7 @@
 #include "fit_module.h"
 #include "named_values.h"
 #include "owned_array.h"
+#include "running_fit.h"
 #include "trilobe/io/formats/model_file.h"
 #include "trilobe/io/formats/trace_file.h"
 #include "trilobe/solvers/solver_options.h"
@@ -40,38 +39,6 @@ namespace trilobe::python {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-// State shared by the thread that fits and the one that waits for it.
-class RunningFit {
- public:
-  void Stop() { stopped_ = true; }
-  bool stopped() const { return stopped_; }
-
-  // A fit that has begun ends when the limit is passed.
-  void Begin() { begun_ = true; }
-  void Limit(double seconds) { limit_ = seconds; }
-  bool IsToEnd() const { return stopped_ || (begun_ && since_.Seconds() >= limit_); }
-
-  void Show(const IterationRecord& record) {
-    const std::lock_guard lock(mutex_);
-    latest_ = record;
-    ++count_;
-  }
-
-  // How many records there have been; iteration, seconds and E of the last.
-  std::tuple<int, int, double, double> Latest() const {
-    const std::lock_guard lock(mutex_);
-    return {count_, latest_.iteration, latest_.seconds, latest_.minimised()};
-  }
-
- private:
-  std::atomic<bool> stopped_ = false, begun_ = false;
-  const Stopwatch since_;
-  double limit_ = std::numeric_limits<double>::infinity();
-  mutable std::mutex mutex_;
-  IterationRecord latest_;
-  int count_ = 0;
-};
 
 // A fit that is through; without a model where it was stopped before it began.
 struct Outcome {

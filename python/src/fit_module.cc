@@ -155,6 +155,7 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
   });
   BindMeasurement(&m);
   BindFit(&m);
+  BindDirections(&m);
   BindObjective(&m);
   BindScore(&m);
   BindTexels(&m);

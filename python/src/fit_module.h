@@ -53,6 +53,7 @@ BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights);
 
 void BindMeasurement(nanobind::module_* module);
 void BindFit(nanobind::module_* module);
+void BindDirections(nanobind::module_* module);
 void BindObjective(nanobind::module_* module);
 void BindScore(nanobind::module_* module);
 void BindTexels(nanobind::module_* module);

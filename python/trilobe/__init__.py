@@ -14,6 +14,7 @@ is a BSDF for Mitsuba 3; `trilobe.torch` evaluates in PyTorch.
 import importlib
 from typing import Any
 
+from trilobe._fitting.directions import Directions, NextDirections, directions_to_measure, next_directions
 from trilobe._fitting.fit import (
     LobeMatch,
     Solver,
@@ -38,9 +39,11 @@ from trilobe._texels.texels import Texels, load_texels
 
 __all__ = [
     "Brdf",
+    "Directions",
     "Error",
     "LobeMatch",
     "Measurement",
+    "NextDirections",
     "Objective",
     "Record",
     "Result",
@@ -50,6 +53,7 @@ __all__ = [
     "Texels",
     "Uncertainty",
     "convert",
+    "directions_to_measure",
     "fit",
     "fit_many",
     "fit_texels",
@@ -58,6 +62,7 @@ __all__ = [
     "load_texels",
     "match_lobes",
     "materials",
+    "next_directions",
     "read",
     "score",
     "solvers",

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trilobe._fitting.directions import Directions
 from trilobe._fitting.extension import fits
-from trilobe._fitting.measurement import Measurement, measurement_of
+from trilobe._fitting.measurement import Measurement, half_angles, measurement_of
 from trilobe._fitting.result import Result
 from trilobe._fitting.uncertainty import Uncertainty
 from trilobe._model.brdf import CHANNELS, Brdf, model_of
@@ -210,3 +211,79 @@ def trace(results: Result | Mapping[str, Result], figure: Any = None) -> Any:
     figure.axes[0].set_ylabel("E")
     figure.axes[0].legend(fontsize=7)
     return figure
+
+
+def directions(
+    next: Directions | Measurement, measured: Directions | Measurement | None = None, figure: Any = None
+) -> Any:
+    """Pairs of directions, filled and numbered in their order; what is measured already is hollow.
+
+    At the left where the detector stands, seen from above: theta_o outwards from the normal, phi_o - phi_i around it,
+    the light's side at the left; sides that mirror each other are one. At the right theta_h over theta_d, of which
+    highlights are the lowest rows. Colours are theta_i.
+    """
+    shown = [(_valid_pairs(next, "next"), True)]
+    if measured is not None:
+        shown.insert(0, (_valid_pairs(measured, "measured"), False))
+    figure = _figure(figure, (10, 3.9))
+    above, beside = figure.subplots(1, 2, width_ratios=(1.6, 1))
+    colors = _theta_i_colors()
+    for (wi, wo), is_next in shown:
+        theta_i, theta_o = (np.degrees(np.arctan2(np.hypot(w[:, 0], w[:, 1]), w[:, 2])) for w in (wi, wo))
+        phi = np.arctan2(wo[:, 1], wo[:, 0]) - np.arctan2(wi[:, 1], wi[:, 0])
+        theta_h, theta_d = (np.degrees(angle) for angle in half_angles(wi, wo))
+        by_theta_i = colors.to_rgba(theta_i)
+        _mark(above, -theta_o * np.cos(phi), theta_o * np.abs(np.sin(phi)), by_theta_i, is_next)
+        _mark(beside, theta_d, theta_h, by_theta_i, is_next)
+    ticks = [0, 30, 60, 90]
+    _draw_sky(above, ticks)
+    beside.axhspan(0, 10, color="0.92", lw=0, zorder=0)
+    beside.text(89, 5, "highlight", ha="right", va="center", fontsize=8, color="0.4")
+    beside.set(xlim=(0, 90), ylim=(0, 90), aspect="equal", title="half and difference angles", xlabel="θd [°]",
+               ylabel="θh [°]", xticks=ticks, yticks=ticks)
+    figure.colorbar(colors, ax=beside, label="θi [°]", ticks=ticks, shrink=0.8)
+    return figure
+
+
+def _draw_sky(axes: Any, rings: list[int]) -> None:
+    """Half of the hemisphere from above, with rings of theta_o and, at its edge, phi_o - phi_i."""
+    around = np.linspace(0, np.pi, 181)
+    for ring in rings[1:]:
+        color = "black" if ring == 90 else "0.8"
+        axes.plot(ring * np.cos(around), ring * np.sin(around), color=color, lw=0.8, zorder=0)
+    for degrees in (0, 45, 90, 135, 180):
+        x, y = -np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        axes.plot([0, 90 * x], [0, 90 * y], color="0.8", lw=0.8, zorder=0, clip_on=False)
+        if 0 < degrees < 180:
+            axes.text(97 * x, 97 * y, f"{degrees}°", ha="center", va="center", fontsize=8)
+    axes.set(xlim=(-100, 100), ylim=(0, 103), aspect="equal", title="the detector, from above",
+             xticks=[-90, -60, -30, *rings], xticklabels=[90, 60, 30, *rings], yticks=[],
+             xlabel="light's side          θo [°]          mirror's side")
+    axes.spines[:].set_visible(False)
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.03, 1.1), fontsize=8, frameon=False, handletextpad=0.2)
+
+
+def _valid_pairs(pairs: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if not isinstance(pairs, (Directions, Measurement)):
+        raise Error(f"{name} must be trilobe.Directions or a trilobe.Measurement", kind="format", key=name)
+    rows = pairs.valid if isinstance(pairs, Measurement) else slice(None)
+    return pairs.wi[rows], pairs.wo[rows]
+
+
+def _theta_i_colors() -> Any:
+    from matplotlib import cm, colors
+
+    return cm.ScalarMappable(colors.Normalize(0, 90), "viridis")
+
+
+def _mark(axes: Any, x: NDArray[Any], y: NDArray[Any], colors: NDArray[Any], is_next: bool) -> None:
+    """Pairs as circles, with numbers where few come next."""
+    numbered = is_next and len(x) <= 60
+    style = {"s": 120 if numbered else 26 if len(x) <= 100 else 8, "linewidths": 1.3}
+    axes.scatter(x, y, facecolors=colors if is_next else "none", edgecolors=colors, zorder=3, clip_on=False, **style)
+    label = "next, in order" if numbered else "next" if is_next else "measured"
+    axes.scatter([], [], facecolors="0.4" if is_next else "none", edgecolors="0.4", label=label, **style)
+    for k, color in enumerate(colors if numbered else ()):
+        dark = color[:3] @ (0.3, 0.6, 0.1) < 0.5
+        axes.annotate(str(k + 1), (x[k], y[k]), ha="center", va="center_baseline", fontsize=7, zorder=4,
+                      color="white" if dark else "black")

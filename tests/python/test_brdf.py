@@ -358,6 +358,8 @@ def test_errors_have_a_kind_and_facts():
      'x.csv: give columns="theta_i,f" or columns="phi_o=a b", scale=0.3183.'),
     ("--theta_i=DEGREES gives it; --nodiagnose saves time (--data_seed)",
      "theta_i=DEGREES gives it; diagnose=False saves time (seed=)"),
+    ("--next needs more; begin with trilobe measure --directions=20",
+     "next= needs more; begin with trilobe.directions_to_measure(20)"),
     ("cannot read '/a/--lobes/b--c.csv': --- is no number", "cannot read '/a/--lobes/b--c.csv': --- is no number"),
 ])
 def test_messages_of_the_program_name_keywords(flags, keywords):

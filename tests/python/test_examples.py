@@ -19,6 +19,7 @@ FILES = {
     "stability": ["starts.png"],
     "texels": ["texels.png"],
     "batch_table": ["table.csv"],
+    "which_directions": ["directions.png"],
     "edit_material": ["edited.png", "edited.json"],
     "mitsuba_scene": ["mitsuba_scene.png"],
     "mitsuba_recover": ["before.png", "after.png", "recovered.json"],

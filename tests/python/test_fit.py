@@ -269,6 +269,7 @@ BAD = [
     (lambda: trilobe.fit(SMALL, init="there"), "there"),
     (lambda: trilobe.fit(SMALL, start=3), "must be a trilobe.Brdf"),
     (lambda: trilobe.fit(SMALL, prior=1), "prior"),
+    (lambda: trilobe.fit(SMALL, progress=np.ones(2)), "progress must be True or False"),
     (lambda: trilobe.fit(None), "a path must be"),
     (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]], [[1, 1]]), r"rho has the shape \(1, 2\)"),
     (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]] * 2, [1.0]), "rows"),

@@ -70,6 +70,33 @@ def test_objectives_of_anything(measurement, options):
     holds(lambda: trilobe.Objective(measurement, **options).value([1.0]))
 
 
+devices = st.dictionaries(st.sampled_from(["theta_max", "in_plane", "incidences", "step", "blind"]),
+                          st.one_of(anything, st.floats(0, 89), st.booleans(), st.lists(st.floats(0, 80))), max_size=3)
+
+
+@settings
+@hypothesis.given(st.one_of(st.integers(1, 99), anything), devices, anything)
+def test_directions_of_anything(count, device, rows):
+    def some():
+        plan = trilobe.directions_to_measure(count, **device)
+        assert len(plan) == count and np.isfinite(plan.angles).all()
+        try:
+            return plan[rows].wi
+        except (IndexError, TypeError):
+            return plan.wo
+
+    holds(some)
+    holds(lambda: trilobe.Directions(rows).wi)
+
+
+@settings
+@hypothesis.given(st.one_of(st.just(TINY), paths, anything), st.one_of(st.integers(1, 9), anything), devices,
+                  st.dictionaries(st.sampled_from(["by", "threads", "progress"]),
+                                  st.one_of(anything, st.sampled_from(["plan", "both"])), max_size=2))
+def test_next_directions_of_anything(measured, count, device, options):
+    holds(lambda: trilobe.next_directions(measured, count, **device, **options))
+
+
 @settings
 @hypothesis.given(st.one_of(models, st.just(TINY), anything), st.one_of(
     st.sampled_from(["a.csv", "a.glsl", "a.hlsl", "a.unknown"]), paths), st.dictionaries(

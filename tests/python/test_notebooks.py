@@ -16,8 +16,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "python" / "examples").glob("*.ipynb"))
 
 
-def test_there_are_two():
-    assert [path.stem for path in NOTEBOOKS] == ["compare_solvers", "fit_your_own"]
+def test_all_are_here():
+    assert [path.stem for path in NOTEBOOKS] == ["compare_solvers", "fit_your_own", "which_directions"]
 
 
 def kinds_of(cells):

@@ -134,7 +134,10 @@ def fit(
     if stop is not None and not callable(getattr(stop, "is_set", None)):
         raise Error("stop must be a threading.Event, or have is_set()")
     by_sample = weights_of(weights, data)
-    outcome = run(data, options, {**solver_options}, by_sample, callback, stop, bool(progress))
+    outcome = run(
+        lambda running, ask: fits().fit(data._data, options, {**solver_options}, running, by_sample, ask),
+        data.source, callback, stop, progress,
+    )
     if not outcome.begun:
         if stop is not None and stop.is_set():
             raise Error("the fit was stopped before there was a model")

@@ -8,13 +8,10 @@ import threading
 from collections.abc import Callable
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from trilobe._fitting.extension import fits
-from trilobe._fitting.measurement import Measurement
 from trilobe._fitting.result import Record
 from trilobe._model.brdf import Brdf
+from trilobe._model.error import Error
 
 _POLL_SECONDS = 0.05
 
@@ -30,17 +27,21 @@ class Stop(Protocol):
 
 
 def run(
-    data: Measurement,
-    options: dict[str, Any],
-    solver_options: dict[str, Any],
-    weights: NDArray[np.float64] | None,
-    callback: Callback | None,
-    stop: Stop | None,
-    progress: bool,
+    fit: Callable[[Any, Callable[[Any, bytes], bool] | None], Any],
+    source: str,
+    callback: Callback | None = None,
+    stop: Stop | None = None,
+    progress: bool = True,
 ) -> Any:
-    """Fits. `callback` is called in this thread, and the fit waits for it."""
-    module = fits()
-    running = module.RunningFit()
+    """What `fit` returns, of a RunningFit and what asks after each iteration whether to stop.
+
+    `callback` is called in this thread, and the fit waits for it. The bar names `source`.
+    """
+    try:
+        shows_bar = bool(progress)
+    except (TypeError, ValueError):  # an array of several numbers has no truth value
+        raise Error("progress must be True or False", kind="format", key="progress") from None
+    running = fits().RunningFit()
     ended: dict[str, Any] = {}
     done = threading.Event()  # join() forgets the thread when Ctrl-C ends it
     asked: queue.Queue[tuple[Any, bytes]] = queue.Queue()
@@ -55,8 +56,7 @@ def run(
 
     def work() -> None:
         try:
-            asking = None if callback is None else ask
-            ended["outcome"] = module.fit(data._data, options, solver_options, running, weights, asking)
+            ended["outcome"] = fit(running, None if callback is None else ask)
         except BaseException as error:
             ended["error"] = error
         finally:
@@ -80,7 +80,7 @@ def run(
             answers.put(answered)
 
     thread = threading.Thread(target=work, name="trilobe.fit", daemon=True)
-    bar = _Bar(progress, data.source)
+    bar = _Bar(shows_bar, source)
     stopped = False
     thread.start()
     try:

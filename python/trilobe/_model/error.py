@@ -8,6 +8,8 @@ import re
 # at ": ", as it may have blanks.
 _BEGINNING = re.compile(r"\A--([a-z][a-z0-9_]*)=(.*?)(?=: )")
 _FLAG = re.compile(r"(['\"])--([a-z][a-z0-9_]*)=(.*?)\1|(?<![\w/.'\"-])--([a-z][a-z0-9_]*)(?:=([^\s;)]*[^\s;),.:]))?")
+# A command that a message advises, and the call that does the same.
+_COMMAND, _CALL = re.compile(r"trilobe measure --directions=(\d+)"), r"trilobe.directions_to_measure(\1)"
 _OTHER_NAMES = {"data_seed": "seed"}
 _SWITCHES = ("dark_noise", "diagnose", "extrapolated", "match_reflectance", "outliers", "raw", "spectral")
 
@@ -61,6 +63,7 @@ def in_keywords(text: str) -> str:
         name = _OTHER_NAMES.get(name, name)
         return f"{name}={'' if value is None else _as_python(value)}"
 
+    text = _COMMAND.sub(_CALL, text)
     text = _BEGINNING.sub(lambda found: keyword(found[1], found[2]), text, count=1)
     return _FLAG.sub(lambda found: keyword(found[2] or found[4], found[3] or found[5]), text)
 
