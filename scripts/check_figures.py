@@ -337,6 +337,8 @@ def has_changed(root: pathlib.Path, revision: str, paths: list[str], experiment:
 @functools.cache
 def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     """Why results are not those of this version of the program; empty if they are."""
+    if (results / "machine.json").exists():
+        return ""  # times, which it says the machine and the revision of
     if not (results / "manifest.json").exists():
         return "without a manifest"
     made = json.loads((results / "manifest.json").read_text())
