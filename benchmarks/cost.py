@@ -3,11 +3,11 @@
 
 benchmarks/cost.py MERL_FOLDER [--build=build/release] [--rounds=3] [--out=benchmarks/results]
 
-It wants the machine for itself, for ten minutes. Each round fits each material and the example of a goniometer by the
-defaults, on one thread and on two, with pictures and without, and takes a sweep of the literal AWLS in the same minute,
-so that ratios to it hold on other machines. Then it fits samples on no grid, and runs fit_benchmark and read_benchmark.
-Medians over the rounds go to fits.csv, samples.csv and passes.csv in the folder --out, and machine.json says which
-machine and revision they are of. scripts/check_figures.py compares the page with them.
+It wants the machine for itself, for a quarter of an hour. Each round fits each material and the example of a
+goniometer by the defaults, on one thread and on two, with pictures and without, and takes a sweep of the literal AWLS in
+the same minute, so that ratios to it hold on other machines. Then it fits samples on no grid, and runs fit_benchmark and
+read_benchmark. Medians over the rounds go to fits.csv, samples.csv and passes.csv in the folder --out, and machine.json
+says which machine and revision they are of. scripts/check_figures.py compares the page with them.
 """
 import argparse
 import csv

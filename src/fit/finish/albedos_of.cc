@@ -1,22 +1,21 @@
 #include "fit/finish/albedos_of.h"
 
-#include "model/measurement/albedo_rule.h"
 #include "trilobe/core/base/angles.h"
 #include "trilobe/core/base/directions.h"
 #include "trilobe/core/system/parallel.h"
 
 namespace trilobe {
 
-Rgb AlbedoOf(const PreparedModel<double>& prepared, double theta_i) {
+Rgb AlbedoOf(const PreparedModel<double>& prepared, double theta_i, int azimuths) {
   Rgb albedo{};
   VisitReflected(
-      theta_i, kAlbedoAzimuths,
+      theta_i, azimuths,
       [&](const DirectionPair& pair, double weight) {
         const Rgb value = prepared.Value(pair.wi, pair.wo);
         for (int c = 0; c < kChannels; ++c) albedo[c] += weight * value[c];
       },
       Side::kOne);
-  for (double& x : albedo) x *= 2 * 2 * kPi / kAlbedoAzimuths;
+  for (double& x : albedo) x *= 2 * 2 * kPi / azimuths;
   return albedo;
 }
 

@@ -37,19 +37,16 @@ class Turn {
   double cos_, sin_;
 };
 
-// An albedo by few azimuths of half vectors: half of them where one half mirrors the other.
+// An albedo by few azimuths of half vectors.
 Rgb QuickAlbedo(const PreparedModel<double>& prepared, bool anisotropic, const PolarAngles& at) {
+  if (!anisotropic) return AlbedoOf(prepared, at.theta, kQuickAzimuths);
   const Turn turned(at.phi);
   Rgb albedo{};
-  VisitReflected(
-      at.theta, kQuickAzimuths,
-      [&](const DirectionPair& pair, double weight) {
-        const Rgb value = anisotropic ? prepared.Value(turned(pair.wi), turned(pair.wo))
-                                      : prepared.Value(pair.wi, pair.wo);
-        for (int c = 0; c < kChannels; ++c) albedo[c] += weight * value[c];
-      },
-      anisotropic ? Side::kBoth : Side::kOne);
-  for (double& x : albedo) x *= (anisotropic ? 1 : 2) * 2 * kPi / kQuickAzimuths;
+  VisitReflected(at.theta, kQuickAzimuths, [&](const DirectionPair& pair, double weight) {
+    const Rgb value = prepared.Value(turned(pair.wi), turned(pair.wo));
+    for (int c = 0; c < kChannels; ++c) albedo[c] += weight * value[c];
+  });
+  for (double& x : albedo) x *= 2 * kPi / kQuickAzimuths;
   return albedo;
 }
 
