@@ -87,13 +87,20 @@ std::optional<AxisCosts> PathFromFlags() {
         .About("path", FLAGS_path);
   }
   std::ranges::copy(*costs, path.of_radian.begin());
-  AlongShortPath({}, path);  // its error
+  CheckAxisCosts(path);
   return path;
 }
 
+// What was asked for beside the number of directions.
+struct Wanted {
+  Goniometer device;
+  std::optional<AxisCosts> path;
+};
+
 // Prints the directions or writes them to --out, of which it then says this.
-void Give(std::vector<SphericalAngles> directions, const Inputs& inputs, std::string words) {
-  if (const std::optional<AxisCosts> path = PathFromFlags()) {
+void Give(std::vector<SphericalAngles> directions, const std::optional<AxisCosts>& path,
+          const Inputs& inputs, std::string words) {
+  if (path) {
     const double before = PathCost(directions, *path);
     directions = AlongShortPath(std::move(directions), *path);
     const double share = before > 0 ? PathCost(directions, *path) / before : 1;
@@ -126,7 +133,7 @@ std::string Expectation(const NextDirections& next) {
               : "; measure these " + std::to_string(count) + ", and ask again");
 }
 
-int GiveNext(const std::string& source, const Goniometer& device) {
+int GiveNext(const std::string& source, const Wanted& wanted) {
   if (!IsDefault("directions")) {
     throw Error(ErrorKind::kConflict,
                 "--directions is for a material that is not known, and --next for one that is "
@@ -137,23 +144,23 @@ int GiveNext(const std::string& source, const Goniometer& device) {
   const Inputs inputs({source, FLAGS_probe});
   if (!FLAGS_out.empty()) inputs.CheckOutput(FLAGS_out);  // before the work
   const Measurement measured = MeasurementOfSource(source, SourceOptionsFromFlags());
-  const NextDirections next = NextDirectionsToMeasure(measured, FLAGS_next, by, device,
+  const NextDirections next = NextDirectionsToMeasure(measured, FLAGS_next, by, wanted.device,
                                                       {.appearance = AppearanceOptionsFromFlags(),
                                                        .num_threads = ThreadsFromFlags(),
                                                        .on_stage = Status::Stage});
   Status::End();
   (FLAGS_out.empty() ? std::cerr : std::cout) << Expectation(next) << "\n";
-  Give(next.directions, inputs, "to be measured in this order");
+  Give(next.directions, wanted.path, inputs, "to be measured in this order");
   return 0;
 }
 
-int GivePlan(const Goniometer& device) {
+int GivePlan(const Wanted& wanted) {
   for (const auto& [flag, value] : GivenFlags(WithSourceFlags({"next", "by", "probe"}))) {
     throw Error(ErrorKind::kMissing,
                 "--" + flag + " goes with the SOURCE of what was measured; name its file")
         .About(flag, value);
   }
-  Give(DirectionsToMeasure(FLAGS_directions, device), {},
+  Give(DirectionsToMeasure(FLAGS_directions, wanted.device), wanted.path, {},
        "of which any first ones are spread evenly");
   return 0;
 }
@@ -165,16 +172,15 @@ int RunMeasure(std::span<const std::string> arguments) {
                                              "name in .csv")
         .About("out", FLAGS_out);
   }
-  const Goniometer device = DeviceFromFlags();
-  PathFromFlags();  // its error, before the work
-  if (arguments.empty()) return GivePlan(device);
+  const Wanted wanted = {DeviceFromFlags(), PathFromFlags()};
+  if (arguments.empty()) return GivePlan(wanted);
   if (IsDefault("next")) {
     throw Error(ErrorKind::kMissing, arguments[0] +
                                          " has what was measured; say how many directions come "
                                          "next, as --next=10")
         .About("next");
   }
-  return GiveNext(arguments[0], device);
+  return GiveNext(arguments[0], wanted);
 }
 
 }  // namespace
@@ -198,8 +204,7 @@ Command MeasureCommand() {
           "scattered samples of what was measured so far, it fits these, prints how far off the "
           "fit is expected to\nbe, now and then, and lists --next=N directions that are not among "
           "them: those that come next\nin the plan. With --by=design each is the one that tells "
-          "most "
-          "of what is seen, given the fit and all before; with\n--by=both they take turns.",
+          "most of what is seen, given the fit and all before; with\n--by=both they take turns.",
       .flags = WithSourceFlags({"directions", "next", "by", "theta_max", "in_plane", "incidences",
                                 "step", "blind", "path", "out", "probe"}),
       .run = RunMeasure};

@@ -85,6 +85,13 @@ void TurnParts(const std::vector<Stand>& at, Order* order) {
 
 }  // namespace
 
+void CheckAxisCosts(const AxisCosts& costs) {
+  for (const double cost : costs.of_radian) {
+    if (cost >= 0 && cost <= std::numeric_limits<float>::max()) continue;
+    throw Error(ErrorKind::kRange, "what an axis takes must be 0 or more").About("path", cost);
+  }
+}
+
 double PathCost(const std::vector<SphericalAngles>& directions, const AxisCosts& costs) {
   return CostOf(StandsOf(directions, costs), AsGiven(directions.size()));
 }
@@ -97,10 +104,7 @@ std::vector<SphericalAngles> AlongShortPath(std::vector<SphericalAngles> directi
                                        std::to_string(kMostOfPath) + " at most")
         .About("path", directions.size());
   }
-  for (const double cost : costs.of_radian) {
-    if (cost >= 0 && cost <= std::numeric_limits<float>::max()) continue;
-    throw Error(ErrorKind::kRange, "what an axis takes must be 0 or more").About("path", cost);
-  }
+  CheckAxisCosts(costs);
   const std::vector<Stand> at = StandsOf(directions, costs);
   const Order given = AsGiven(directions.size());
   Order order = given;

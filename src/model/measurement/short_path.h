@@ -17,6 +17,9 @@ struct AxisCosts {
   bool in_plane = false;
 };
 
+// Throws Error unless they are finite and at least 0.
+void CheckAxisCosts(const AxisCosts& costs);
+
 inline constexpr int kMostOfPath = 2000;
 
 // What it takes to go through all of them in this order.
@@ -24,8 +27,7 @@ double PathCost(const std::vector<SphericalAngles>& directions, const AxisCosts&
 
 // The same directions in an order that takes little, from the first one on: always to the nearest,
 // and then parts of the way turned round while that makes it shorter (2-opt, Croes 1958). Never
-// dearer than as they are. Throws Error for more than kMostOfPath, and unless costs are finite and
-// at least 0.
+// dearer than as they are. Throws Error for more than kMostOfPath, and as CheckAxisCosts.
 std::vector<SphericalAngles> AlongShortPath(std::vector<SphericalAngles> directions,
                                             const AxisCosts& costs);
 
